@@ -1,0 +1,109 @@
+"""Arguments: what a user hands in is checked here, once, and refused in one clear sentence.
+
+In:  anything.
+Out: arrays and numbers that the rest can rely on; or a ``ValueError`` that states the rule and the value it got.
+
+>>> as_points([(1, 2), (3, float("nan"))])
+Traceback (most recent call last):
+    ...
+ValueError: points must be finite, got (3.0, nan) in row 1
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+def as_points(points: ArrayLike | Iterable[Any], name: str = "points") -> NDArray[np.float64]:
+    """Return points as an (N, 2) array of finite floats, or say in one sentence what is wrong.
+
+    Parameters
+    ----------
+    points : array_like, shape (N, 2)
+        Positions in metres, world frame. An empty sequence gives shape (0, 2).
+    name : str
+        What the points are called in the error message.
+
+    Raises
+    ------
+    ValueError
+        If the shape is not (N, 2) or a value is NaN or infinite.
+
+    Examples
+    --------
+    >>> as_points([(1, 2)])
+    array([[1., 2.]])
+    >>> as_points([]).shape
+    (0, 2)
+    """
+    try:
+        array = np.asarray(points, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} must be numbers in an array of shape (N, 2), got {short(points)}") from None
+    if array.size == 0 and array.ndim <= 2:
+        return np.empty((0, 2))
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise ValueError(f"{name} must have shape (N, 2), got shape {array.shape}")
+    finite = np.isfinite(array).all(axis=1)
+    if not finite.all():
+        row = int(np.argmin(finite))
+        raise ValueError(f"{name} must be finite, got {tuple(array[row].tolist())} in row {row}")
+    return array
+
+
+def as_positive(value: Any, name: str, *, zero: bool = False) -> float:
+    """Return a finite float above zero (or from zero up), or say in one sentence what is wrong.
+
+    >>> as_positive(3, "radius")
+    3.0
+    """
+    rule = "a finite number >= 0" if zero else "a finite number > 0"
+    try:
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{name} must be {rule}, got {short(value)}") from None
+    if not np.isfinite(number) or number < 0 or (number == 0 and not zero):
+        raise ValueError(f"{name} must be {rule}, got {number:g}")
+    return number
+
+
+def as_count(value: Any, name: str, least: int = 1) -> int:
+    """Return a whole number of at least ``least``, or say in one sentence what is wrong.
+
+    >>> as_count(np.int64(4), "n_shapes")
+    4
+    """
+    whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+    if not whole or value < least:
+        raise ValueError(f"{name} must be a whole number >= {least}, got {short(value)}")
+    return int(value)
+
+
+def as_poses(poses: ArrayLike) -> NDArray[np.float64]:
+    """Return poses as a (P, 3) array of finite floats, or say in one sentence what is wrong.
+
+    >>> as_poses((0, 0, 0)).shape
+    (1, 3)
+    """
+    try:
+        array = np.asarray(poses, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError("poses must be numbers in an array of shape (P, 3): x, y, heading") from None
+    array = array.reshape(-1, 3) if array.size == 0 or array.shape == (3,) else array
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"poses must have shape (P, 3): x, y, heading; got shape {array.shape}")
+    finite = np.isfinite(array).all(axis=1)
+    if not finite.all():
+        row = int(np.argmin(finite))
+        raise ValueError(f"poses must be finite, got {tuple(array[row].tolist())} in row {row}")
+    return array
+
+
+def short(value: Any) -> str:
+    """Return a value as text, cut to the length of a line."""
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

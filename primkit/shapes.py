@@ -1,0 +1,313 @@
+"""Shapes: the circles and polygons that a board is made of, and that primkit finds.
+
+First step of the story. The truth and the finding are the same two types, so that like is compared with
+like: a map holds ``Circle`` and ``Polygon``, and so does every result.
+
+In:  centres, corners and radii in metres, in the world frame (x to the right, y up).
+Out: frozen shapes that know their kind, centroid, dimensions, outline and signed distance.
+
+>>> square = Polygon([(0, 0), (0.2, 0), (0.2, 0.1), (0, 0.1)])
+>>> square.kind, square.dimensions
+('rectangle', (0.2, 0.1))
+>>> Circle((0.1, 0.2), 0.05).signed_distance([(0.1, 0.2), (0.3, 0.2)]).round(3).tolist()
+[-0.05, 0.15]
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .arguments import as_count, as_points, as_positive, short
+
+if TYPE_CHECKING:
+    import shapely
+
+Kind = Literal["circle", "triangle", "rectangle", "pentagon"]
+KINDS: tuple[Kind, ...] = ("circle", "triangle", "rectangle", "pentagon")
+
+# Corners closer than a nanometre are one corner: far below the 1 mm grid, far above rounding (1e-16 m).
+SAME_CORNER = 1e-9
+# A corner that bends the outline by less than this (in radians) is no corner: the sides are one side.
+STRAIGHT = 1e-9
+
+
+def _pair(point: NDArray[np.float64]) -> str:
+    """Write a point for reading: six digits, and rounding's 1e-17 as the 0 that it means."""
+    x, y = (round(v, 9) + 0.0 for v in point.tolist())
+    return f"({x:.6g}, {y:.6g})"
+
+
+def _frozen(array: NDArray[np.float64]) -> NDArray[np.float64]:
+    array = array.copy()
+    array.setflags(write=False)
+    return array
+
+
+@dataclass(frozen=True, eq=False)
+class Circle:
+    """A circle.
+
+    Parameters
+    ----------
+    center : array_like, shape (2,)
+        Centre in metres, world frame.
+    radius : float
+        Radius in metres, greater than zero.
+
+    Raises
+    ------
+    ValueError
+        If the centre is not two finite numbers or the radius is not above zero.
+
+    Examples
+    --------
+    >>> c = Circle((0, 0), 0.1)
+    >>> c.kind, c.dimensions, c.centroid.tolist()
+    ('circle', (0.1,), [0.0, 0.0])
+    """
+
+    center: NDArray[np.float64]
+    radius: float
+
+    def __init__(self, center: ArrayLike, radius: float) -> None:
+        try:
+            middle = as_points([center], "center")
+        except ValueError:
+            middle = np.empty((0, 2))
+        if len(middle) != 1:
+            raise ValueError(f"center must be two finite numbers (x, y), got {short(center)}")
+        object.__setattr__(self, "center", _frozen(middle[0]))
+        object.__setattr__(self, "radius", as_positive(radius, "radius"))
+
+    @property
+    def kind(self) -> Kind:
+        """``"circle"``."""
+        return "circle"
+
+    @property
+    def centroid(self) -> NDArray[np.float64]:
+        """Centre of area, shape (2,), metres: the circle's centre."""
+        return self.center
+
+    @property
+    def dimensions(self) -> tuple[float, ...]:
+        """``(radius,)`` in metres."""
+        return (self.radius,)
+
+    @property
+    def area(self) -> float:
+        """Area in square metres."""
+        return float(np.pi * self.radius**2)
+
+    @property
+    def perimeter(self) -> float:
+        """Length of the outline in metres."""
+        return float(2 * np.pi * self.radius)
+
+    @property
+    def reach(self) -> float:
+        """Greatest distance from the centroid to the outline, in metres."""
+        return self.radius
+
+    def outline(self, n: int = 200) -> NDArray[np.float64]:
+        """Return n points evenly spaced along the outline, counter-clockwise, shape (n, 2), metres."""
+        theta = np.arange(as_count(n, "n")) * (2 * np.pi / n)
+        return self.center + self.radius * np.column_stack([np.cos(theta), np.sin(theta)])
+
+    def signed_distance(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Return each point's distance to the outline, shape (N,), metres; negative inside."""
+        return np.hypot(*(as_points(points) - self.center).T) - self.radius
+
+    def moved(self, offset: ArrayLike = (0.0, 0.0), angle: float = 0.0) -> Circle:
+        """Return the circle shifted by ``offset`` metres (turning a circle changes nothing)."""
+        return Circle(self.center + np.asarray(offset, dtype=float), self.radius)
+
+    def to_shapely(self, quad_segs: int = 64) -> shapely.Polygon:
+        """Return a shapely polygon with 4 x ``quad_segs`` corners on the circle."""
+        import shapely
+
+        return shapely.Point(self.center).buffer(self.radius, quad_segs=quad_segs)
+
+    def __eq__(self, other: object) -> bool:
+        """Two circles are equal when centre and radius are, to the last bit."""
+        if not isinstance(other, Circle):
+            return NotImplemented
+        return self.radius == other.radius and np.array_equal(self.center, other.center)
+
+    def __hash__(self) -> int:
+        return hash((*self.center.tolist(), self.radius))
+
+    def __repr__(self) -> str:
+        return f"Circle(center={_pair(self.center)}, radius={self.radius:.6g})"
+
+
+@dataclass(frozen=True, eq=False)
+class Polygon:
+    """A convex polygon with three to five corners, counter-clockwise.
+
+    Corners given clockwise are turned round (the first one stays first); a corner that repeats its
+    neighbour, as a closed ring's last one does, is dropped.
+
+    Parameters
+    ----------
+    vertices : array_like, shape (K, 2)
+        Corners in metres, world frame, in order around the outline.
+
+    Raises
+    ------
+    ValueError
+        If fewer than three or more than five corners are left, if three corners lie on one line, or if
+        the outline crosses itself or is not convex.
+
+    Examples
+    --------
+    A clockwise ring that closes on itself is put right:
+
+    >>> p = Polygon([(0, 0), (0, 1), (1, 0), (0, 0)])
+    >>> p.vertices.tolist()
+    [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]
+    >>> p.kind, p.centroid.round(3).tolist()
+    ('triangle', [0.333, 0.333])
+    """
+
+    vertices: NDArray[np.float64]
+
+    def __init__(self, vertices: ArrayLike) -> None:
+        corners = _without_repeats(as_points(vertices, "vertices"))
+        if not 3 <= len(corners) <= 5:
+            raise ValueError(f"a polygon must have 3 to 5 different corners, got {len(corners)}")
+        object.__setattr__(self, "vertices", _frozen(_counter_clockwise(corners)))
+
+    @property
+    def kind(self) -> Kind:
+        """``"triangle"``, ``"rectangle"`` (four corners) or ``"pentagon"``."""
+        return KINDS[len(self.vertices) - 2]
+
+    @property
+    def edges(self) -> NDArray[np.float64]:
+        """Vectors along the sides, from each corner to the next, shape (K, 2), metres."""
+        return np.roll(self.vertices, -1, axis=0) - self.vertices
+
+    @property
+    def sides(self) -> NDArray[np.float64]:
+        """Lengths of the sides, starting at the first corner, shape (K,), metres."""
+        return np.hypot(*self.edges.T)
+
+    @property
+    def normals(self) -> NDArray[np.float64]:
+        """Unit normals of the sides, pointing outwards, shape (K, 2)."""
+        along = self.edges / self.sides[:, None]
+        return np.column_stack([along[:, 1], -along[:, 0]])
+
+    @property
+    def area(self) -> float:
+        """Area in square metres (shoelace formula)."""
+        x, y = (self.vertices - self.vertices[0]).T  # near the origin: no digits lost far from it
+        return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+    @property
+    def perimeter(self) -> float:
+        """Length of the outline in metres."""
+        return float(self.sides.sum())
+
+    @property
+    def centroid(self) -> NDArray[np.float64]:
+        """Centre of area, shape (2,), metres: the mean over the surface, not over the corners."""
+        x, y = (self.vertices - self.vertices[0]).T
+        weight = x * np.roll(y, -1) - np.roll(x, -1) * y
+        moment = [np.sum((v + np.roll(v, -1)) * weight) for v in (x, y)]
+        return self.vertices[0] + np.array(moment) / (3 * weight.sum())
+
+    @property
+    def dimensions(self) -> tuple[float, ...]:
+        """Rectangle: ``(width, height)``, width >= height; triangle and pentagon: their sides, in metres.
+
+        Each of a rectangle's two is the mean of two opposite sides, so that a measured outline whose
+        corners are not exactly square still has one width and one height.
+        """
+        sides = self.sides
+        if len(sides) == 4:
+            sides = np.sort((sides[:2] + sides[2:]) / 2)[::-1]
+        return tuple(sides.tolist())
+
+    @property
+    def reach(self) -> float:
+        """Greatest distance from the centroid to the outline, in metres."""
+        return float(np.hypot(*(self.vertices - self.centroid).T).max())
+
+    def outline(self, n: int = 200) -> NDArray[np.float64]:
+        """Return n points evenly spaced along the outline, counter-clockwise, shape (n, 2), metres."""
+        ring = np.vstack([self.vertices, self.vertices[:1]])
+        travelled = np.concatenate([[0.0], np.cumsum(self.sides)])
+        stops = np.arange(as_count(n, "n")) * (travelled[-1] / n)
+        return np.column_stack([np.interp(stops, travelled, ring[:, axis]) for axis in (0, 1)])
+
+    def signed_distance(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Return each point's distance to the outline, shape (N,), metres; negative inside."""
+        offset = as_points(points)[:, None, :] - self.vertices  # (N, K, 2) from each corner
+        edges = self.edges
+        along = np.clip((offset * edges).sum(-1) / (edges**2).sum(-1), 0.0, 1.0)
+        distance = np.linalg.norm(offset - along[..., None] * edges, axis=-1).min(axis=1)
+        inside = ((offset * self.normals).sum(-1) < 0).all(axis=1)
+        return np.where(inside, -distance, distance)
+
+    def moved(self, offset: ArrayLike = (0.0, 0.0), angle: float = 0.0) -> Polygon:
+        """Return the polygon turned by ``angle`` radians about its centroid, then shifted by ``offset``."""
+        c, s = np.cos(angle), np.sin(angle)
+        middle = self.centroid
+        turned = (self.vertices - middle) @ np.array([[c, s], [-s, c]])
+        return Polygon(turned + middle + np.asarray(offset, dtype=float))
+
+    def to_shapely(self) -> shapely.Polygon:
+        """Return the shapely polygon with the same corners."""
+        import shapely
+
+        return shapely.Polygon(self.vertices)
+
+    def __eq__(self, other: object) -> bool:
+        """Two polygons are equal when their corners are, in the same order, to the last bit."""
+        if not isinstance(other, Polygon):
+            return NotImplemented
+        return np.array_equal(self.vertices, other.vertices)
+
+    def __hash__(self) -> int:
+        return hash(self.vertices.tobytes())
+
+    def __repr__(self) -> str:
+        return f"Polygon([{', '.join(map(_pair, self.vertices))}])"
+
+
+Shape = Circle | Polygon
+
+
+def _without_repeats(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Drop each corner that repeats the one before it, the first one included (a closed ring)."""
+    if len(corners) == 0:
+        return corners
+    step = np.hypot(*(corners - np.roll(corners, 1, axis=0)).T)
+    keep = step > SAME_CORNER
+    if len(corners) > 1 and not keep[0]:  # a closed ring repeats its first corner at the end
+        keep[0], keep[-1] = True, False
+    return corners[keep]
+
+
+def _counter_clockwise(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return convex corners counter-clockwise, or refuse what is not convex."""
+    edges = np.roll(corners, -1, axis=0) - corners
+    before = np.roll(edges, 1, axis=0)
+    cross = before[:, 0] * edges[:, 1] - before[:, 1] * edges[:, 0]
+    turn = np.arctan2(cross, (before * edges).sum(axis=1))  # how far the outline bends at each corner
+    straight = np.abs(np.abs(turn) - np.pi / 2) > np.pi / 2 - STRAIGHT
+    if straight.any():
+        row = int(np.argmax(straight))
+        corner = _pair(corners[row])
+        raise ValueError(f"a polygon's corners must not lie on one line, got {corner} between its neighbours")
+    # A convex outline bends one way only and turns round once: 2 pi in all (a pentagram turns round twice).
+    if abs(abs(turn.sum()) - 2 * np.pi) > 1e-6 or not (np.all(turn > 0) or np.all(turn < 0)):
+        ring = ", ".join(map(_pair, corners))
+        raise ValueError(f"a polygon must be convex and must not cross itself, got [{ring}]")
+    return corners if turn[0] > 0 else np.roll(corners[::-1], 1, axis=0)
