@@ -1,0 +1,203 @@
+"""LiDAR: what the robot sees from where it stands.
+
+Fourth step of the story. A hundred beams leave the robot at even bearings; each returns the distance to the
+first outline it meets, or infinity.
+
+In:  a ``World`` and poses, shape (P, 3): x [m], y [m], heading [rad], world frame.
+Out: ``Scans``: ``.ranges``, shape (P, B), metres; ``.points()``, the hits, shape (N, 2), metres, world frame.
+
+>>> from primkit.shapes import Circle
+>>> from primkit.world import World
+>>> seen = scan(World([Circle((0.2, 0.0), 0.05)]), [(0.0, 0.0, 0.0)])
+>>> seen.ranges.shape, round(float(seen.ranges[0, 0]), 3), len(seen.points())
+((1, 100), 0.15, 9)
+
+Source: the sensor is that of the paper's section 3.1; field names follow the LaserScan message of ROS.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .arguments import as_count, as_poses, as_positive
+from .raycast import cast
+from .world import World
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Lidar:
+    """A LiDAR that turns once: the paper's, unless told otherwise.
+
+    Parameters
+    ----------
+    beams : int
+        Number of beams, evenly spread over the full turn; beam 0 looks straight ahead, the others follow
+        counter-clockwise.
+    range_min, range_max : float
+        Nearest and farthest distance that is measured, in metres. A nearer outline still blocks the beam.
+    noise_std : float
+        Standard deviation of the error of each range, in metres.
+    period : float
+        Time that one scan takes, in seconds.
+    dropout : float
+        Share of the hits that are lost (from 0 to 1).
+    spurious : float
+        Share of all beams that return a random range, whatever is there (from 0 to 1).
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+
+    Examples
+    --------
+    >>> Lidar().angles[:3].round(4).tolist()
+    [0.0, 0.0628, 0.1257]
+    """
+
+    beams: int = 100
+    range_min: float = 0.05
+    range_max: float = 0.3
+    noise_std: float = 0.0
+    period: float = 0.1
+    dropout: float = 0.0
+    spurious: float = 0.0
+
+    def __post_init__(self) -> None:
+        as_count(self.beams, "beams")
+        for name in ("range_min", "noise_std", "dropout", "spurious"):
+            as_positive(getattr(self, name), name, zero=True)
+        for name in ("range_max", "period"):
+            as_positive(getattr(self, name), name)
+        if self.range_min >= self.range_max:
+            raise ValueError(f"range_min must be below range_max, got {self.range_min:g} and {self.range_max:g}")
+        for name in ("dropout", "spurious"):
+            if getattr(self, name) > 1:
+                raise ValueError(f"{name} must be a share from 0 to 1, got {getattr(self, name):g}")
+
+    @property
+    def angle_increment(self) -> float:
+        """Angle from one beam to the next, in radians."""
+        return 2 * np.pi / self.beams
+
+    @property
+    def angles(self) -> Floats:
+        """Bearing of each beam from the robot's heading, shape (B,), radians in [0, 2 pi)."""
+        return np.arange(self.beams, dtype=float) * self.angle_increment
+
+
+@dataclass(frozen=True, eq=False)
+class Scans:
+    """What the LiDAR saw from each pose.
+
+    Parameters
+    ----------
+    poses : array, shape (P, 3)
+        x [m], y [m], heading [rad], world frame.
+    angles : array, shape (B,)
+        Bearing of each beam from the heading, radians.
+    ranges : array, shape (P, B)
+        Measured distances in metres; ``inf`` where a beam met nothing in range.
+    inside : array of bool, shape (P,)
+        Poses that lie in a shape: they see nothing.
+
+    Examples
+    --------
+    >>> scans = scan(World(), [(0.0, 0.0, 0.0)])
+    >>> len(scans), scans.points().shape
+    (1, (0, 2))
+    """
+
+    poses: Floats
+    angles: Floats
+    ranges: Floats
+    inside: NDArray[np.bool_]
+
+    @property
+    def hits(self) -> NDArray[np.bool_]:
+        """Which beams met something, shape (P, B)."""
+        return np.isfinite(self.ranges)
+
+    def points(self) -> Floats:
+        """Return where the beams hit, shape (N, 2), metres, world frame; pose by pose, beam by beam."""
+        pose, beam = np.nonzero(self.hits)
+        bearing = self.poses[pose, 2] + self.angles[beam]
+        reach = self.ranges[pose, beam]
+        return self.poses[pose, :2] + reach[:, None] * np.column_stack([np.cos(bearing), np.sin(bearing)])
+
+    def __len__(self) -> int:
+        return len(self.poses)
+
+    def __getitem__(self, which: slice | Sequence[int] | NDArray[np.integer]) -> Scans:
+        """Return some of the scans: ``scans[5:6]`` is the sixth alone."""
+        if isinstance(which, (int, np.integer)):
+            which = [int(which)]
+        return Scans(self.poses[which], self.angles, self.ranges[which], self.inside[which])
+
+
+def scan(
+    world: World,
+    poses: ArrayLike,
+    lidar: Lidar | None = None,
+    *,
+    rng: int | np.random.Generator | None = None,
+) -> Scans:
+    """Scan the world once from each pose.
+
+    Parameters
+    ----------
+    world : World
+        What stands on the board.
+    poses : array_like, shape (P, 3)
+        x [m], y [m], heading [rad], world frame; one pose alone may have shape (3,).
+    lidar : Lidar, optional
+        The sensor; the paper's by default.
+    rng : int or numpy.random.Generator, optional
+        Seed or generator for noise, dropouts and spurious returns.
+
+    Returns
+    -------
+    Scans
+        A beam without a hit in range reads ``inf``. Noise is added first and the reading is then clipped
+        to the sensor's limits. A pose inside a shape sees nothing, and ``Scans.inside`` says so.
+
+    Raises
+    ------
+    ValueError
+        If the poses are not finite or not of shape (P, 3).
+
+    Examples
+    --------
+    A shape nearer than ``range_min`` hides what is behind it:
+
+    >>> from primkit.shapes import Circle
+    >>> near, far = Circle((0.05, 0.0), 0.03), Circle((0.2, 0.0), 0.03)
+    >>> float(scan(World([near, far]), [(0, 0, 0)]).ranges[0, 0])
+    inf
+    """
+    lidar = Lidar() if lidar is None else lidar
+    poses = as_poses(poses)
+    ranges, inside = cast(world, poses, lidar.angles, lidar.range_max, lidar.range_min)
+    _disturb(ranges, lidar, np.random.default_rng(rng))
+    ranges[inside] = np.inf
+    return Scans(poses, lidar.angles, ranges, inside)
+
+
+def _disturb(ranges: Floats, lidar: Lidar, rng: np.random.Generator) -> None:
+    """Add the sensor's faults to exact ranges, in place; each fault has its own stream of numbers."""
+    noise, losses, ghosts = rng.spawn(3)
+    hit = np.isfinite(ranges)
+    if lidar.noise_std > 0:
+        noisy = ranges + noise.normal(0.0, lidar.noise_std, ranges.shape)
+        ranges[hit] = np.clip(noisy[hit], lidar.range_min, lidar.range_max)
+    if lidar.dropout > 0:
+        ranges[losses.random(ranges.shape) < lidar.dropout] = np.inf
+    if lidar.spurious > 0:
+        ghost = ghosts.random(ranges.shape) < lidar.spurious
+        ranges[ghost] = ghosts.uniform(lidar.range_min, lidar.range_max, int(ghost.sum()))
