@@ -1,0 +1,183 @@
+"""Segmentation: which points belong together.
+
+In:  the grid's points, shape (N, 2), metres.
+Out: a label for each point, shape (N,): 0, 1, 2, ... from left to right; -1 for a point that belongs to nothing.
+
+>>> points = [(0.0, 0.0), (0.01, 0.0), (0.5, 0.0), (0.51, 0.0)]
+>>> segment(points, 2, rng=0).tolist()
+[0, 0, 1, 1]
+
+K-Means is the method of the paper. It must be told the number of groups, and it draws its borders half-way
+between their centres, which cuts a long thin shape beside a small one. Two remedies stand beside it, each
+usable alone: ``count_by_silhouette`` finds the number, and ``link`` joins neighbours, whatever their form.
+
+Sources: K-Means, Lloyd (1982), started after Arthur and Vassilvitskii (2007), "k-means++"; the silhouette,
+Rousseeuw (1987); linking is DBSCAN, Ester, Kriegel, Sander and Xu (1996). All three come from scikit-learn.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .arguments import as_count, as_points, as_positive
+
+Floats = NDArray[np.float64]
+Labels = NDArray[np.int64]
+Grouping = Literal["kmeans", "link"]
+
+# Neighbours on an outline lie a few millimetres apart, 2 cm where only distant poses saw it; shapes lie farther.
+LINK = 0.022
+LINK_NEIGHBOURS = 4  # a point joins others when so many, itself included, lie within a link: strays do not
+LEAST_GROUP = 8  # a smaller group is a handful of strays
+STARTS = 10  # K-Means depends on where it starts: the best of ten
+MOST_SHAPES = 12
+
+
+def segment(
+    points: ArrayLike,
+    n_shapes: int | None = None,
+    *,
+    method: Grouping = "kmeans",
+    rng: int | np.random.Generator | None = None,
+) -> Labels:
+    """Return a label for each point: which group it belongs to.
+
+    Parameters
+    ----------
+    points : array_like, shape (N, 2)
+        Metres.
+    n_shapes : int, optional
+        Number of groups. When it is not given, K-Means takes the number with the best silhouette; linking
+        needs no number and takes none.
+    method : {"kmeans", "link"}
+        How to group.
+    rng : int or numpy.random.Generator, optional
+        Seed or generator for K-Means' starts.
+
+    Raises
+    ------
+    ValueError
+        If points are not finite (N, 2), or more shapes are asked for than there are different points.
+
+    Examples
+    --------
+    >>> segment([], rng=0).tolist()
+    []
+    """
+    points = as_points(points)
+    if method not in ("kmeans", "link"):
+        raise ValueError(f'method must be "kmeans" or "link", got {method!r}')
+    if n_shapes is not None:
+        check_count(n_shapes, points)
+    if len(points) == 0:
+        return np.empty(0, dtype=np.int64)
+    if method == "link":
+        return link(points)
+    rng = np.random.default_rng(rng)
+    return kmeans(points, count_by_silhouette(points, rng=rng) if n_shapes is None else n_shapes, rng=rng)
+
+
+def check_count(n_shapes: int, points: Floats) -> None:
+    """Refuse to look for more shapes than there are different points."""
+    different = len(np.unique(points, axis=0))
+    if as_count(n_shapes, "n_shapes", least=0) > different:
+        raise ValueError(f"n_shapes must be at most the number of different points, got {n_shapes} for {different}")
+
+
+def kmeans(points: ArrayLike, k: int, *, rng: int | np.random.Generator | None = None) -> Labels:
+    """Return labels that make the k groups as compact as possible, shape (N,).
+
+    Raises
+    ------
+    ValueError
+        If k is larger than the number of different points, or below one where there are points.
+
+    Examples
+    --------
+    >>> kmeans([(0, 0), (0, 1), (9, 9)], 2, rng=0).tolist()
+    [0, 0, 1]
+    """
+    from sklearn.cluster import KMeans
+
+    points = as_points(points)
+    check_count(as_count(k, "k"), points)
+    seed = int(np.random.default_rng(rng).integers(2**31))
+    return _left_to_right(points, KMeans(k, n_init=STARTS, random_state=seed).fit_predict(points))
+
+
+def count_by_silhouette(
+    points: ArrayLike, most: int = MOST_SHAPES, *, rng: int | np.random.Generator | None = None
+) -> int:
+    """Return the number of groups, 1 to ``most``, whose K-Means groups are the most clearly apart.
+
+    Notes
+    -----
+    The silhouette compares each point's distance to its own group with that to the next one: near 1 is
+    clearly apart, 0 is on the border. It is not defined for one group; one is taken when two or more stay
+    below 0.5, which Rousseeuw reads as no clear structure.
+
+    Examples
+    --------
+    >>> count_by_silhouette([(0, 0), (0, 1), (1, 0), (9, 9), (9, 8), (8, 9)], rng=0)
+    2
+    >>> count_by_silhouette([(0, 0)], rng=0)
+    1
+    """
+    from sklearn.metrics import silhouette_score
+
+    points, rng = as_points(points), np.random.default_rng(rng)
+    different = len(np.unique(points, axis=0))
+    best, best_score = min(1, different), 0.5
+    for k in range(2, min(most, different - 1) + 1):
+        score = silhouette_score(points, kmeans(points, k, rng=rng))
+        if score > best_score:
+            best, best_score = k, score
+    return best
+
+
+def link(points: ArrayLike, reach: float = LINK, neighbours: int = LINK_NEIGHBOURS) -> Labels:
+    """Return labels that join neighbours, and neighbours of neighbours, shape (N,); -1 for strays.
+
+    Parameters
+    ----------
+    points : array_like, shape (N, 2)
+        Metres.
+    reach : float
+        Two points this close or closer are neighbours, in metres.
+    neighbours : int
+        A point hands on its group when so many points, itself included, lie within reach.
+
+    Notes
+    -----
+    Finds groups of any form and needs no number, but splits an outline at an unseen stretch wider than
+    ``reach``, and joins two shapes that come closer than that.
+
+    Examples
+    --------
+    >>> row = [(x / 100, 0.0) for x in range(10)]
+    >>> link(row + [(0.5, 0.5)]).tolist()
+    [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1]
+    """
+    from sklearn.cluster import DBSCAN
+
+    points = as_points(points)
+    if len(points) == 0:
+        return np.empty(0, dtype=np.int64)
+    reach, neighbours = as_positive(reach, "reach"), as_count(neighbours, "neighbours")
+    labels = DBSCAN(eps=reach, min_samples=neighbours).fit_predict(points)
+    sizes = np.bincount(labels[labels >= 0], minlength=labels.max() + 1)
+    strays = (labels < 0) | (sizes[labels] < LEAST_GROUP)
+    return _left_to_right(points, np.where(strays, -1, labels))
+
+
+def _left_to_right(points: Floats, labels: NDArray[np.integer]) -> Labels:
+    """Return the same groups numbered by the x (then y) of their means, so that numbers mean the same in any order."""
+    groups = np.unique(labels[labels >= 0])
+    means = np.array([points[labels == g].mean(axis=0) for g in groups]).reshape(-1, 2)
+    numbered = np.full(len(labels), -1, dtype=np.int64)
+    for number, g in enumerate(np.lexsort((means[:, 1], means[:, 0]))):
+        numbered[labels == groups[g]] = number
+    return numbered
