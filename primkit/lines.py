@@ -1,0 +1,194 @@
+"""Lines: the sides of a polygon, found one after the other by RANSAC.
+
+In:  points of one cluster, shape (N, 2), metres.
+Out: ``Line`` objects and which points lie on each.
+
+>>> points = [(x / 100, 0.0) for x in range(20)] + [(0.0, y / 100) for y in range(1, 15)]
+>>> [(len(found.inliers.nonzero()[0])) for found in find_lines(points, threshold=0.001, rng=0)]
+[20, 14]
+
+A line is written in normal form, ``n . p = d``: every direction is alike, a vertical line is no exception,
+and ``n . p - d`` is the signed distance of a point.
+
+Sources: Fischler and Bolles (1981); total least squares after Pearson (1901), "On lines and planes of closest fit".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .arguments import as_points
+from .ransac import Consensus, Model, run_ransac
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line ``n . p = d``.
+
+    Parameters
+    ----------
+    angle : float
+        Bearing of the unit normal n, radians.
+    offset : float
+        Signed distance d of the line from the origin along n, metres.
+
+    Examples
+    --------
+    >>> vertical = Line(angle=0.0, offset=0.2)
+    >>> vertical.signed_distance([(0.2, 5.0), (0.3, 0.0)]).round(3).tolist()
+    [0.0, 0.1]
+    """
+
+    angle: float
+    offset: float
+
+    @property
+    def normal(self) -> Floats:
+        """Unit normal, shape (2,)."""
+        return np.array([np.cos(self.angle), np.sin(self.angle)])
+
+    @property
+    def direction(self) -> Floats:
+        """Unit vector along the line, shape (2,): the normal turned by a quarter to the left."""
+        return np.array([-np.sin(self.angle), np.cos(self.angle)])
+
+    def signed_distance(self, points: ArrayLike) -> Floats:
+        """Return ``n . p - d`` of each point, shape (N,), metres."""
+        return as_points(points) @ self.normal - self.offset
+
+    def turned_round(self) -> Line:
+        """Return the same line with the opposite normal."""
+        return Line(float(np.arctan2(-np.sin(self.angle), -np.cos(self.angle))), -self.offset)
+
+
+@dataclass(frozen=True, eq=False)
+class FoundLine:
+    """A line and the points on it: ``inliers`` is a mask over the cluster's points, shape (N,)."""
+
+    line: Line
+    inliers: NDArray[np.bool_]
+
+
+def fit_line(points: ArrayLike) -> Line | None:
+    """Return the line with the least squared distances to the points (total least squares).
+
+    Parameters
+    ----------
+    points : array_like, shape (N, 2)
+        Metres.
+
+    Returns
+    -------
+    Line or None
+        None when fewer than two different points are given.
+
+    Raises
+    ------
+    ValueError
+        If points are not finite (N, 2).
+
+    Examples
+    --------
+    >>> line = fit_line([(0, 1), (1, 1), (2, 1)])
+    >>> round(abs(line.offset), 6), abs(line.normal).round(6).tolist()
+    (1.0, [0.0, 1.0])
+    >>> fit_line([(1, 1), (1, 1)]) is None
+    True
+    """
+    params = _fit(as_points(points))
+    return Line(*params.tolist()) if np.isfinite(params).all() else None
+
+
+def find_lines(
+    points: ArrayLike,
+    threshold: float,
+    *,
+    left_over: float = 0.1,
+    most: int = 20,
+    trials: int = 1000,
+    refit: bool = True,
+    rng: int | np.random.Generator | None = None,
+) -> list[FoundLine]:
+    """Return lines found one after the other, each on the points that the lines before it left.
+
+    Parameters
+    ----------
+    points : array_like, shape (N, 2)
+        Metres.
+    threshold : float
+        A point lies on a line when it is at most this far from it, in metres.
+    left_over : float
+        Stop when at most this share of the points is left.
+    most : int
+        Stop after this many lines.
+    trials : int
+        Random samples for each line.
+    refit : bool
+        Fit each line to its inliers by least squares.
+    rng : int or numpy.random.Generator, optional
+        Seed or generator.
+
+    Notes
+    -----
+    Greedy: the first line takes every point near it, those of its neighbours around a corner included.
+
+    Examples
+    --------
+    >>> find_lines([], threshold=0.005)
+    []
+    """
+    points, rng = as_points(points), np.random.default_rng(rng)
+    left = np.ones(len(points), dtype=bool)
+    found: list[FoundLine] = []
+    while len(found) < most and np.count_nonzero(left) > left_over * len(points):
+        rest = np.flatnonzero(left)
+        consensus = run_ransac(points[rest], LINE, threshold, trials=trials, refit=refit, rng=rng)
+        if consensus is None:
+            break
+        found.append(_found(consensus, rest, len(points)))
+        left &= ~found[-1].inliers
+    return found
+
+
+def _found(consensus: Consensus, rest: NDArray[np.int64], n: int) -> FoundLine:
+    """Return the line with its inliers as a mask over all n points."""
+    inliers = np.zeros(n, dtype=bool)
+    inliers[rest[consensus.inliers]] = True
+    return FoundLine(Line(*consensus.params.tolist()), inliers)
+
+
+# --- the line as RANSAC's model: parameters (angle, offset) -----------------------------------------------------
+
+
+def _from_samples(samples: Floats) -> Floats:
+    """Return the line through each pair of points, shape (T, 2, 2) -> (T, 2); NaN for a doubled point."""
+    along = samples[:, 1] - samples[:, 0]
+    angle = np.arctan2(-along[:, 0], along[:, 1])
+    offset = (samples[:, 0] * np.column_stack([np.cos(angle), np.sin(angle)])).sum(axis=1)
+    return np.where((along != 0).any(axis=1)[:, None], np.column_stack([angle, offset]), np.nan)
+
+
+def _residuals(params: Floats, points: Floats) -> Floats:
+    """Return the distances of N points from T lines, shape (T, N)."""
+    normals = np.column_stack([np.cos(params[:, 0]), np.sin(params[:, 0])])
+    return np.abs(normals @ points.T - params[:, 1:])
+
+
+def _fit(points: Floats) -> Floats:
+    """Return the total least squares line, shape (2,); NaN when the points fix none."""
+    if len(points) < 2:
+        return np.full(2, np.nan)
+    center = points.mean(axis=0)
+    _, spread, axes = np.linalg.svd(points - center, full_matrices=False)
+    if spread[0] == 0:
+        return np.full(2, np.nan)
+    normal = axes[1]
+    return np.array([np.arctan2(normal[1], normal[0]), normal @ center])
+
+
+LINE = Model(sample_size=2, from_samples=_from_samples, residuals=_residuals, fit=_fit)
