@@ -1,0 +1,109 @@
+"""Guess: first guesses of a polygon's sides, good enough to be refined.
+
+In:  points of one cluster, shape (N, 2), metres, around the origin.
+Out: ``Outlines`` with k sides each.
+
+>>> from primkit.shapes import Polygon
+>>> ring = Polygon([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)]).outline(80)
+>>> guess_outlines(ring, line_guesses(ring, 0.003, rng=0), 4, 0.003).polygon().kind
+'rectangle'
+
+Two sources, because each fails where the other works: sets of the lines that RANSAC found, and even sectors
+of the points around the middle. The refinement makes the best of either, and the likelihood decides.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .lines import Line, find_lines
+from .outlines import Outlines, from_angle_order, joined
+from .refine import refit
+
+Floats = NDArray[np.float64]
+
+LINES_TRIED = 7  # five sides at most, and two for luck
+LINE_TRIALS = 200  # a side with an eighth of the points is drawn with 95 % certainty
+CLOSING_LINES = 3
+CLOSING_LENGTH = 0.012  # m: a shorter stretch of the hull is the usual distance between points
+SUBSETS_KEPT = 4
+SECTOR_TURNS = 4  # each turned by a quarter of a sector
+
+
+def guess_outlines(points: Floats, sides: Outlines, k: int, reach: float) -> Outlines:
+    """Return guesses of outlines with k sides, the most likely first.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        Metres, around the origin.
+    sides : Outlines
+        One row of lines that may be sides, as ``line_guesses`` returns it.
+    k : int
+        Number of sides.
+    reach : float
+        Points farther than this from an outline do not speak for it, in metres.
+    """
+    return joined(_best_subsets(points, sides, k, reach), _sectors(points, k))
+
+
+def line_guesses(points: Floats, reach: float, *, rng: int | np.random.Generator | None = None) -> Outlines:
+    """Return lines that may be sides, as one outline of M sides: RANSAC's, and the hull's over unseen stretches."""
+    lines = [
+        found.line
+        for found in find_lines(points, reach, left_over=0.03, most=LINES_TRIED, trials=LINE_TRIALS, rng=rng)
+        if np.count_nonzero(found.inliers) >= 3
+    ]
+    lines += _closing_lines(points)
+    outward = [line.turned_round() if line.offset < 0 else line for line in lines]  # the origin is inside
+    return from_angle_order(np.array([[line.angle for line in outward]]), np.array([[line.offset for line in outward]]))
+
+
+def _closing_lines(points: Floats, most: int = CLOSING_LINES) -> list[Line]:
+    """Return lines along the longest sides of the points' hull: where a side was not seen, the hull spans it."""
+    import shapely
+
+    hull = shapely.MultiPoint(points).convex_hull
+    if hull.geom_type != "Polygon":
+        return []
+    ring = shapely.get_coordinates(hull.exterior)
+    along = np.diff(ring, axis=0)
+    length = np.hypot(*along.T)
+    longest = [i for i in np.argsort(-length, kind="stable")[:most] if length[i] > CLOSING_LENGTH]
+    angles = np.arctan2(-along[:, 0], along[:, 1])
+    return [Line(float(angles[i]), float(ring[i] @ (np.cos(angles[i]), np.sin(angles[i])))) for i in longest]
+
+
+def _best_subsets(points: Floats, sides: Outlines, k: int, reach: float, most: int = SUBSETS_KEPT) -> Outlines:
+    """Return the sets of k lines whose outline lies closest to the points."""
+    subsets = np.array(list(combinations(range(sides.angles.shape[1]), k)), dtype=int).reshape(-1, k)
+    outlines = Outlines(sides.angles[0, subsets], sides.offsets[0, subsets])
+    sound = outlines.sound()
+    outlines, subsets = outlines[sound], subsets[sound]
+    r = sides.distances(points)[0]
+    farthest_out = np.full((len(points), len(subsets)), -np.inf)
+    for column in subsets.T:
+        np.maximum(farthest_out, r[:, column], out=farthest_out)
+    cost = (np.minimum(np.abs(farthest_out), reach) ** 2).sum(axis=0)
+    return outlines[np.argsort(cost, kind="stable")[:most]]
+
+
+def _sectors(points: Floats, k: int) -> Outlines:
+    """Return outlines from points cut, by bearing, into k equally full sectors, in several turns.
+
+    When the noise is as large as a side, no two points tell a line any more; a sector's many points do.
+    """
+    order = np.argsort(np.arctan2(points[:, 1], points[:, 0]), kind="stable")
+    n = len(points)
+    weights = np.zeros((SECTOR_TURNS, n, k))
+    for turn in range(SECTOR_TURNS):
+        sector = ((np.arange(n) * k + turn * n // SECTOR_TURNS) // n) % k
+        weights[turn, order, sector] = 1.0
+    mean = np.swapaxes(weights, 1, 2) @ points / weights.sum(axis=1)[..., None]
+    outward = np.arctan2(mean[..., 1], mean[..., 0])
+    guess = refit(points, weights, Outlines(outward, np.zeros_like(outward)))
+    guess = from_angle_order(guess.angles, guess.offsets)
+    return guess[guess.sound()]

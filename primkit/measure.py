@@ -1,0 +1,292 @@
+"""Measure: from the points of one cluster to a shape with its corners, its centre and its dimensions.
+
+Circle or polygon, and how many sides? Each candidate is fitted as well as it can be, and the one that explains
+the points best for its number of parameters is taken.
+
+In:  points of one cluster, shape (N, 2), metres.
+Out: ``Detection``: the shape, its points, how closely they lie to it, and how clear the choice was; or ``None``.
+
+>>> found = measure_shape(Circle((0.1, 0.2), 0.05).outline(60), spread=0.0005, rng=0)
+>>> found.shape, found.margin > 100
+(Circle(center=(0.1, 0.2), radius=0.05), True)
+
+Source: the criterion is BIC, Schwarz (1978), "Estimating the dimension of a model".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .arguments import as_points, as_positive
+from .circles import find_circle, fit_circle
+from .guess import guess_outlines, line_guesses
+from .lines import find_lines
+from .outlines import Outlines
+from .refine import GHOST_AREA, GHOSTS, refine_hard, refine_soft, shares, truncated_cost
+from .shapes import Circle, Kind, Shape
+
+Floats = NDArray[np.float64]
+
+SIGMAS = 3.0  # a point within three standard deviations may belong to a shape
+# A cell's centre lies evenly within half a cell of the point itself: a standard deviation of 1 mm / sqrt(12), and
+# a third more because neighbours along a side err together. No sensor brings the spread [m] below this.
+LEAST_SPREAD = 1.33 * 0.001 / 12**0.5
+NEIGHBOURS = 10  # enough for a line with its spread, few enough for a curve to be straight
+LEAST_POINTS = 8  # fewer fix nothing: a pentagon alone has ten numbers
+MOST_RADIUS = 0.25  # m: a larger circle than a quarter of the board is a wall
+LEAST_ARC = np.radians(60)  # a shorter arc fits a wide range of circles
+GAP = 0.012  # m: a stretch of outline within this of a point counts as seen
+
+CIRCLE_TRIALS = 100  # with four fifths of the points on the circle, one sample in two is clean
+CIRCLE_ROUNDS = 5
+
+
+@dataclass(frozen=True, eq=False)
+class Detection:
+    """A shape that was found.
+
+    Parameters
+    ----------
+    shape : Circle or Polygon
+        The shape, metres, world frame.
+    points : array, shape (N, 2)
+        The points that lie on it, metres.
+    rms : float
+        Root mean square distance of those points from the outline, metres.
+    margin : float
+        How much better this shape explains the points than the best of another kind: the difference
+        in BIC; above 10 is very strong (Kass and Raftery, 1995). Infinite when there is no rival.
+    seen : tuple of float
+        The share of each side (or of the whole circle) that has points near it, 0 to 1.
+    """
+
+    shape: Shape
+    points: Floats
+    rms: float
+    margin: float = float("inf")
+    seen: tuple[float, ...] = ()
+
+    @property
+    def kind(self) -> Kind:
+        """The shape's kind."""
+        return self.shape.kind
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """One explanation of a cluster: a shape (None for a bare wall) and its BIC (smaller is better)."""
+
+    shape: Shape | None
+    bic: float
+
+    @property
+    def kind(self) -> str:
+        """The shape's kind, or ``"wall"``."""
+        return "wall" if self.shape is None else self.shape.kind
+
+
+def measure_shape(
+    points: ArrayLike, spread: float, *, rng: int | np.random.Generator | None = None
+) -> Detection | None:
+    """Return the shape that explains the points of one cluster best.
+
+    Parameters
+    ----------
+    points : array_like, shape (N, 2)
+        Metres; a few may belong to nothing.
+    spread : float
+        Standard deviation of the points from the outline, metres; see ``spread_of``.
+    rng : int or numpy.random.Generator, optional
+        Seed or generator for the RANSAC stages.
+
+    Returns
+    -------
+    Detection or None
+        None when there are fewer than eight points, or a bare wall explains them as well.
+
+    Raises
+    ------
+    ValueError
+        If points are not finite (N, 2), or the spread is negative.
+
+    Examples
+    --------
+    A straight wall is no shape:
+
+    >>> measure_shape([(x / 100, 0) for x in range(20)], spread=0.001, rng=0) is None
+    True
+    """
+    points, spread = as_points(points), max(LEAST_SPREAD, as_positive(spread, "spread", zero=True))
+    return as_detection(points, candidates(points, spread, rng=rng), spread)
+
+
+def as_detection(points: Floats, ranked: list[Candidate], spread: float) -> Detection | None:
+    """Return the best candidate with those of the points that lie on it; None when it is no shape."""
+    shape = ranked[0].shape if ranked else None
+    if shape is None:
+        return None
+    rival = next((other.bic for other in ranked if other.kind != shape.kind), float("inf"))
+    return detection(shape, points, SIGMAS * spread, margin=rival - ranked[0].bic)
+
+
+def spread_of(points: ArrayLike) -> float:
+    """Return the standard deviation of points from the outlines that they lie on, before any is known, metres.
+
+    Each point's neighbours lie on a piece of outline that is nearly straight: what they scatter across it is
+    the spread, and the median over all points does not mind corners and strays.
+
+    Notes
+    -----
+    A little low when the spread is larger than the distance between neighbours: half at 10 mm.
+
+    Examples
+    --------
+    >>> spread_of([]) == LEAST_SPREAD
+    True
+    """
+    from scipy.spatial import cKDTree
+
+    points = as_points(points)
+    if len(points) < NEIGHBOURS:
+        return LEAST_SPREAD
+    near = points[cKDTree(points).query(points, NEIGHBOURS)[1]]  # (N, NEIGHBOURS, 2)
+    x, y = np.moveaxis(near - near.mean(axis=1, keepdims=True), 2, 0)
+    xx, yy, xy = (x * x).sum(axis=1), (y * y).sum(axis=1), (x * y).sum(axis=1)
+    across = (xx + yy - np.hypot(xx - yy, 2 * xy)) / 2  # the smaller eigenvalue of the scatter matrix
+    variance = np.maximum(across, 0.0) / (NEIGHBOURS - 2)  # two numbers fix a line
+    return max(LEAST_SPREAD, float(np.sqrt(np.median(variance))))
+
+
+def detection(shape: Shape, points: Floats, reach: float, margin: float = float("inf")) -> Detection:
+    """Return the shape with those of the points that lie within ``reach`` metres of its outline."""
+    distance = shape.signed_distance(points)
+    on_it = np.abs(distance) <= reach
+    rms = float(np.sqrt(np.mean(distance[on_it] ** 2))) if on_it.any() else float("nan")
+    return Detection(shape, points[on_it], rms, margin, seen_shares(shape, points[on_it]))
+
+
+def seen_shares(shape: Shape, points: Floats, gap: float = GAP) -> tuple[float, ...]:
+    """Return the share of each side, or of the whole circle, that lies within ``gap`` metres of a point.
+
+    Examples
+    --------
+    >>> from primkit.shapes import Polygon
+    >>> square = Polygon([(0, 0), (0.1, 0), (0.1, 0.1), (0, 0.1)])
+    >>> [round(share, 1) for share in seen_shares(square, np.array([(0.0, 0.05), (0.05, 0.0)]))]
+    [0.3, 0.0, 0.0, 0.3]
+    """
+    from scipy.spatial import cKDTree
+
+    if isinstance(shape, Circle):
+        stretches = [shape.outline(120)]
+    else:
+        steps = (np.arange(30) + 0.5)[:, None] / 30
+        stretches = [corner + steps * edge for corner, edge in zip(shape.vertices, shape.edges, strict=True)]
+    if len(points) == 0:
+        return (0.0,) * len(stretches)
+    nearest, _ = cKDTree(points).query(np.vstack(stretches))
+    return tuple((nearest.reshape(len(stretches), -1) <= gap).mean(axis=1).tolist())
+
+
+def candidates(points: Floats, spread: float, *, rng: int | np.random.Generator | None = None) -> list[Candidate]:
+    """Return every explanation of a cluster's points, the best first.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        Metres.
+    spread : float
+        Standard deviation of the points from the outline, metres.
+    rng : int or numpy.random.Generator, optional
+        Seed or generator.
+
+    Returns
+    -------
+    list of Candidate
+        A wall, a circle, and polygons of three to five sides, as far as each can be fitted.
+    """
+    if len(points) < LEAST_POINTS:
+        return []
+    circle_rng, line_rng = np.random.default_rng(rng).spawn(2)
+    middle = points.mean(axis=0)
+    local = points - middle  # digits are not lost far from the origin
+
+    found = [_wall(local, spread), _circle(local, spread, circle_rng), *_polygons(local, spread, line_rng)]
+    ranked = sorted((c for c in found if c is not None), key=lambda c: c.bic)
+    return [Candidate(c.shape and c.shape.moved(middle), c.bic) for c in ranked]
+
+
+def _bic(log_likelihood: float, n_params: int, n_points: int) -> float:
+    """Return the Bayesian information criterion: -2 ln L + q ln N."""
+    return float(-2 * log_likelihood + n_params * np.log(n_points))
+
+
+def _density(distance: Floats, length: float, spread: float) -> Floats:
+    """Return the density of points that come from anywhere along a smooth outline, as in ``refine.shares``."""
+    across = np.exp(-0.5 * (distance / spread) ** 2) / (np.sqrt(2 * np.pi) * spread)
+    return (1 - GHOSTS) * across / length
+
+
+def _log_likelihood(distance: Floats, length: float, spread: float) -> float:
+    """Return how likely the points are, those from nowhere included."""
+    return float(np.log(_density(distance, length, spread) + GHOSTS / GHOST_AREA).sum())
+
+
+def _wall(points: Floats, spread: float) -> Candidate | None:
+    """Explain the points by one straight wall: three numbers, with the place of its two ends bounding it."""
+    lines = find_lines(points, SIGMAS * spread, most=1, trials=CIRCLE_TRIALS, rng=0)
+    if not lines:
+        return None
+    line, inliers = lines[0].line, lines[0].inliers
+    length = max(float(np.ptp(points[inliers] @ line.direction)), spread)
+    fit = _log_likelihood(line.signed_distance(points), length, spread)
+    return Candidate(None, _bic(fit, 4, len(points)))
+
+
+def _circle(points: Floats, spread: float, rng: np.random.Generator) -> Candidate | None:
+    """Explain the points by a circle: RANSAC, then the geometric fit to its inliers until they settle."""
+    circle = find_circle(points, SIGMAS * spread, trials=CIRCLE_TRIALS, rng=rng)
+    for _ in range(CIRCLE_ROUNDS):  # every point counts as far as it is likely to come from the circle
+        if circle is None or circle.radius > MOST_RADIUS:
+            return None
+        density = _density(circle.signed_distance(points), circle.perimeter, spread)
+        circle = fit_circle(points, weights=density / (density + GHOSTS / GHOST_AREA))
+    if circle is None or circle.radius > MOST_RADIUS:
+        return None
+    if 2 * np.pi * seen_shares(circle, points)[0] < LEAST_ARC:
+        return None
+    fit = _log_likelihood(circle.signed_distance(points), circle.perimeter, spread)
+    return Candidate(circle, _bic(fit, 3, len(points)))
+
+
+def _polygons(points: Floats, spread: float, rng: np.random.Generator) -> list[Candidate]:
+    """Explain the points by polygons of three to five sides, and by a rectangle."""
+    sides = line_guesses(points, SIGMAS * spread, rng=rng)
+    found = []
+    for k in (3, 4, 5):
+        guess = guess_outlines(points, sides, k, SIGMAS * spread)
+        found.append(_polygon(points, guess, spread, square=False))
+        if k == 4:
+            upright = Outlines(guess.angles[:, :1] + np.arange(4) * (np.pi / 2), guess.offsets)
+            found.append(_polygon(points, upright, spread, square=True))
+    return [candidate for candidate in found if candidate is not None]
+
+
+def _polygon(points: Floats, guess: Outlines, spread: float, *, square: bool) -> Candidate | None:
+    """Refine all guesses together and return the best as a candidate; None when none is sound."""
+    if len(guess) == 0:
+        return None
+    refined = refine_hard(points, guess, SIGMAS * spread, square=square)
+    refined = refined[refined.sound()]
+    if len(refined) == 0:
+        return None
+    best = np.argmin(truncated_cost(points, refined, SIGMAS * spread))
+    outline = refine_soft(points, refined[best : best + 1], spread, square=square)
+    if not outline.sound()[0]:
+        return None
+    _, log_likelihood = shares(points, outline, spread)
+    n_params = 5 if square else 2 * outline.angles.shape[1]
+    return Candidate(outline.polygon(), _bic(float(log_likelihood[0]), n_params, len(points)))

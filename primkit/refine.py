@@ -1,0 +1,172 @@
+"""Refine: all sides of a shape, fitted together until nothing moves.
+
+RANSAC finds sides one after the other, and the first one takes points of its neighbours around the corners.
+Here every point is given back to the side it belongs to, all sides are fitted anew, and so on to a fixed point.
+
+In:  points of one cluster, shape (N, 2), metres, and ``Outlines``: guesses of the sides.
+Out: ``Outlines`` again, refined side by side, and how well each explains the points.
+
+>>> from primkit.shapes import Polygon
+>>> ring = Polygon([(0, 0), (0.1, 0), (0.1, 0.1), (0, 0.1)]).outline(80)
+>>> guess = Outlines(np.array([[0.1, 1.6, 3.2, 4.6]]), np.array([[0.09, 0.09, 0.01, 0.01]]))
+>>> (refine_hard(ring, guess, reach=0.02).offsets.round(6) + 0).tolist()
+[[0.1, 0.1, 0.0, 0.0]]
+
+Sources: giving points back, Isack and Boykov (2012), "Energy-based geometric multi-model fitting"; soft shares,
+Dempster, Laird and Rubin (1977), "Maximum likelihood from incomplete data via the EM algorithm".
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
+
+from .outlines import Outlines
+
+Floats = NDArray[np.float64]
+
+# A side that has fewer points than this (shares count in part) has nothing to be fitted to, and stays.
+LEAST_SHARE = 2.0
+# Share of returns that come from nowhere, and the area [m^2] over which those near a shape are spread.
+GHOSTS, GHOST_AREA = 0.02, 0.05
+
+HARD_ROUNDS = 8
+SOFT_ROUNDS = 30
+SETTLED = 1e-7  # radians, and tenths of metres: a hundredth of what any sensor tells
+
+
+def refine_hard(points: Floats, guess: Outlines, reach: float, *, square: bool = False) -> Outlines:
+    """Give each point to the side it belongs to, refit all sides, and repeat.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        Metres.
+    guess : Outlines
+        C guesses.
+    reach : float
+        Points farther than this from an outline do not count for it, in metres.
+    square : bool
+        Keep right angles (four sides): one bearing is fitted for all sides together.
+
+    Returns
+    -------
+    Outlines
+        The C guesses after a few rounds; some may no longer be ``sound``.
+    """
+    sides = np.arange(guess.angles.shape[1])
+    for _ in range(HARD_ROUNDS):
+        r = guess.distances(points)
+        owner = r.argmax(axis=2)
+        near = np.abs(np.take_along_axis(r, owner[..., None], axis=2)) <= reach
+        guess = refit(points, ((owner[..., None] == sides) & near).astype(float), guess, square=square)
+    return guess
+
+
+def refine_soft(points: Floats, guess: Outlines, spread: float, *, square: bool = False) -> Outlines:
+    """Give each point to all sides in the shares that its position makes likely, refit, repeat until settled.
+
+    Around a corner nobody can say which side a noisy point came from. Giving it to the farther side, as
+    ``refine_hard`` does, pushes both sides outwards; shares do not.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        Metres.
+    guess : Outlines
+        C sound guesses, each near its solution.
+    spread : float
+        Standard deviation of the points' distance from the outline, metres.
+    square : bool
+        Keep right angles (four sides).
+
+    Returns
+    -------
+    Outlines
+        The C outlines, settled; or as they were when one of them stopped being ``sound``.
+    """
+    for _ in range(SOFT_ROUNDS):
+        refined = refit(points, shares(points, guess, spread)[0], guess, square=square)
+        change = max(
+            float(np.abs(refined.angles - guess.angles).max()),
+            10 * float(np.abs(refined.offsets - guess.offsets).max()),
+        )
+        guess = refined
+        if change <= SETTLED or not guess.sound().all():
+            break
+    return guess
+
+
+def truncated_cost(points: Floats, outlines: Outlines, reach: float) -> Floats:
+    """Return the sum of squared distances from each outline, each held at ``reach^2``, shape (C,), square metres."""
+    farthest_out = outlines.distances(points).max(axis=2)
+    return (np.minimum(np.abs(farthest_out), reach) ** 2).sum(axis=1)
+
+
+def shares(points: Floats, outlines: Outlines, spread: float) -> tuple[Floats, Floats]:
+    """Return to what share each point belongs to each side, and how likely the points are.
+
+    The model: a point comes from anywhere along the outline with the same chance, and is moved by Gaussian
+    noise of ``spread``; a few come from nowhere.
+
+    Returns
+    -------
+    shares : array, shape (C, N, K)
+        The rest to one is the share of a point that comes from nowhere.
+    log_likelihood : array, shape (C,)
+        Natural logarithm of the density of all points together.
+    """
+    begin, end = outlines.spans()
+    length = (end - begin)[:, None, :]
+    t = outlines.along(points) - begin[:, None, :]
+    within = ndtr(t / spread) - ndtr((t - length) / spread)  # a side's ends, blurred by the noise
+    across = np.exp(-0.5 * (outlines.distances(points) / spread) ** 2) / (np.sqrt(2 * np.pi) * spread)
+    density = (1 - GHOSTS) * np.maximum(within, 0.0) * across / length.sum(axis=2, keepdims=True)
+    total = density.sum(axis=2) + GHOSTS / GHOST_AREA
+    return density / total[..., None], np.log(total).sum(axis=1)
+
+
+def refit(points: Floats, weights: Floats, outlines: Outlines, *, square: bool = False) -> Outlines:
+    """Return the outlines whose sides fit their points best, by weighted total least squares.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        Metres.
+    weights : array, shape (C, N, K)
+        How much each point counts for each side.
+    outlines : Outlines
+        Sides without points stay as they are here; the fitted normals keep to the same side.
+    square : bool
+        Fit one bearing for four sides at right angles.
+    """
+    x, y = points.T
+    features = np.column_stack([np.ones_like(x), x, y, x * x, y * y, x * y])
+    mass, *moments = np.moveaxis(np.swapaxes(weights, 1, 2) @ features, 2, 0)  # (C, K) each
+    enough = mass >= LEAST_SHARE
+    with np.errstate(divide="ignore", invalid="ignore"):  # sides without points are set right below
+        mx, my, mxx, myy, mxy = (m / mass for m in moments)
+    sxx, syy, sxy = mxx - mx * mx, myy - my * my, mxy - mx * my  # scatter about each side's mean
+
+    if square:
+        angles = _common_bearing(*(np.where(enough, mass * s, 0.0) for s in (sxx, syy, sxy)))
+        fitted = np.ones_like(enough)
+    else:
+        angles = 0.5 * np.arctan2(2 * sxy, sxx - syy) + np.pi / 2  # across the direction of most scatter
+        fitted = enough
+    # An axis has two normals; keep the one on the side where the normal was.
+    angles = outlines.angles + np.mod(angles - outlines.angles + np.pi / 2, np.pi) - np.pi / 2
+    angles = np.where(fitted, angles, outlines.angles)
+    offsets = np.where(enough, np.cos(angles) * mx + np.sin(angles) * my, outlines.offsets)
+    return Outlines(angles, offsets)
+
+
+def _common_bearing(sxx: Floats, syy: Floats, sxy: Floats) -> Floats:
+    """Return the normals' bearings of four sides at right angles, from the scatter of each, shape (C, 4)."""
+    turned = np.array([False, True, False, True])  # every second side is turned back by a quarter
+    along = np.where(turned, syy, sxx).sum(axis=1)
+    across = np.where(turned, sxx, syy).sum(axis=1)
+    mixed = np.where(turned, -sxy, sxy).sum(axis=1)
+    first = 0.5 * np.arctan2(2 * mixed, along - across) + np.pi / 2
+    return first[:, None] + np.arange(4) * (np.pi / 2)

@@ -1,0 +1,171 @@
+"""Regroup: the second opinion on which points belong together.
+
+Linking neighbours splits an outline where a stretch of it was not seen, and joins shapes that stand too close.
+Once shapes are measured this can be judged: two groups become one when one shape explains them better than
+two, and one becomes two when two shapes do.
+
+In:  groups of points, and how far points spread from outlines.
+Out: groups again, each with its explanations.
+
+>>> from primkit.shapes import Circle
+>>> ring = Circle((0, 0), 0.06).outline(100)
+>>> halves = [explained(ring[:45], 0.0004), explained(ring[50:95], 0.0004)]
+>>> len(regrouped(halves, 0.0004))
+1
+
+Source: comparing explanations of different size by BIC, as X-Means does: Pelleg and Moore (2000), "X-means:
+extending K-means with efficient estimation of the number of clusters".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .measure import SIGMAS, Candidate, candidates, seen_shares
+from .segmentation import LEAST_GROUP, kmeans
+from .shapes import Polygon, Shape
+
+Floats = NDArray[np.float64]
+
+CLOSED = 0.9  # an outline seen on nine tenths of its length is no piece of another
+WELL_EXPLAINED = 0.9  # share of a group's points on its shape; with fewer, the group may be two
+INSIDE_HULL = 0.05  # share of points that may lie inside a hull which should be an outline
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Points that belong together, with their explanations, the best first."""
+
+    points: Floats
+    ranked: list[Candidate]
+
+    @property
+    def shape(self) -> Shape | None:
+        """The best explanation's shape; None for a bare wall or too few points."""
+        return self.ranked[0].shape if self.ranked else None
+
+    @property
+    def bic(self) -> float:
+        """BIC of the best explanation; smaller is better. Too few points for any: each comes from nowhere."""
+        return self.ranked[0].bic if self.ranked else 0.0
+
+
+def explained(points: Floats, spread: float, seed: int = 0) -> Group:
+    """Return the points with all their explanations.
+
+    Every group is measured with the same seed, so that a group's result does not depend on the others.
+    """
+    return Group(points, candidates(points, spread, rng=seed))
+
+
+def regrouped(groups: Sequence[Group], spread: float, n_shapes: int | None = None, seed: int = 0) -> list[Group]:
+    """Split and merge groups as long as that explains the points better.
+
+    Parameters
+    ----------
+    groups : sequence of Group
+        As segmentation left them.
+    spread : float
+        Standard deviation of the points from the outlines, metres.
+    n_shapes : int, optional
+        The number of groups to end with, when it is known.
+    seed : int
+        Seed for measuring and for K-Means.
+
+    Returns
+    -------
+    list of Group
+        As many as asked for, as far as the points allow; else as many as explain the points best.
+    """
+    groups = list(groups)
+    if n_shapes is None or len(groups) < n_shapes:
+        groups = _split_all(groups, spread, n_shapes, seed)
+    if n_shapes is None or len(groups) > n_shapes:
+        groups = _merge_all(groups, spread, n_shapes, seed)
+    return groups
+
+
+def _split_all(groups: list[Group], spread: float, n_shapes: int | None, seed: int) -> list[Group]:
+    """Split the group that gains most by it, again and again."""
+    halves = {id(g): _halves(g, spread, n_shapes, seed) for g in groups}
+    while n_shapes is None or len(groups) < n_shapes:
+        gains = [_cost_apart(*halves[id(g)]) - g.bic if halves[id(g)] else np.inf for g in groups]
+        best = int(np.argmin(gains)) if groups else 0
+        if not groups or not gains[best] < (0 if n_shapes is None else np.inf):
+            break
+        new = halves[id(groups[best])]
+        groups[best : best + 1] = new
+        halves.update({id(g): _halves(g, spread, n_shapes, seed) for g in new})
+    return groups
+
+
+def _halves(group: Group, spread: float, n_shapes: int | None, seed: int) -> tuple[Group, ...]:
+    """Return a group as two, cut by K-Means; nothing when it is too small or well explained as it is."""
+    if len(group.points) < 2 * LEAST_GROUP or (n_shapes is None and _share_on_shape(group, spread) >= WELL_EXPLAINED):
+        return ()
+    labels = kmeans(group.points, 2, rng=seed)
+    return tuple(explained(group.points[labels == label], spread, seed) for label in (0, 1))
+
+
+def _share_on_shape(group: Group, spread: float) -> float:
+    """Return the share of a group's points that lie on its best shape; none without a shape."""
+    if group.shape is None:
+        return 0.0
+    return float(np.mean(np.abs(group.shape.signed_distance(group.points)) <= SIGMAS * spread))
+
+
+def _merge_all(groups: list[Group], spread: float, n_shapes: int | None, seed: int) -> list[Group]:
+    """Merge the two groups that gain most by it, again and again."""
+    merged: dict[tuple[int, int], Group | None] = {}
+    while len(groups) > (n_shapes or 1):
+        best, best_gain = None, 0.0 if n_shapes is None else np.inf
+        for a, b in combinations(groups, 2):
+            if (id(a), id(b)) not in merged:
+                plausible = n_shapes is not None or _may_be_one(a, b, spread)
+                together = np.vstack([a.points, b.points])
+                merged[id(a), id(b)] = explained(together, spread, seed) if plausible else None
+            one = merged[id(a), id(b)]
+            if one is not None and one.ranked and one.bic - _cost_apart(a, b) < best_gain:
+                best, best_gain = (a, b, one), one.bic - _cost_apart(a, b)
+        if best is None:
+            break
+        a, b, one = best
+        groups = [one if g is a else g for g in groups if g is not b]
+    return groups
+
+
+def _cost_apart(a: Group, b: Group) -> float:
+    """Return the BIC of two groups as two shapes: each point also has to come from its own of the two."""
+    n, m = len(a.points), len(b.points)
+    mixing = n * np.log(n / (n + m)) + m * np.log(m / (n + m))
+    return float(a.bic + b.bic - 2 * mixing)
+
+
+def _may_be_one(a: Group, b: Group, spread: float) -> bool:
+    """Tell quickly whether two groups can be pieces of one convex outline.
+
+    One of them must be open, and the points of both must lie along the hull of both.
+    """
+    import shapely
+
+    if _is_closed(a) and _is_closed(b):
+        return False
+    points = np.vstack([a.points, b.points])
+    hull = shapely.MultiPoint(points).convex_hull
+    depth = shapely.distance(hull.boundary, shapely.points(points))
+    # The hull runs along the outermost points: the others lie up to six spreads farther in.
+    return bool(np.mean(depth > 6 * spread + 0.002) <= INSIDE_HULL)
+
+
+def _is_closed(group: Group) -> bool:
+    """Tell whether a group's outline was seen nearly all around."""
+    shape = group.shape
+    if shape is None:
+        return False
+    lengths = shape.sides if isinstance(shape, Polygon) else [shape.perimeter]
+    return bool(np.average(seen_shares(shape, group.points), weights=lengths) >= CLOSED)
