@@ -1,0 +1,183 @@
+"""Pipeline: the whole story, from points to shapes, on one screen.
+
+In:  the grid's points, shape (N, 2), metres.
+Out: a list of ``Detection``: each with its shape, its points, and how sure it is.
+
+>>> from primkit.shapes import Circle
+>>> found = find_shapes(Circle((0.1, 0.0), 0.06).outline(150), rng=0)
+>>> [d.shape for d in found]
+[Circle(center=(0.1, 0), radius=0.06)]
+
+Two settings. ``PAPER`` is the method as it was published: K-Means with the known number of shapes, one line
+after the other by RANSAC until a tenth of the points is left, the number of lines for a name, extents and
+means for measures. ``ROBUST``, the default, finds the number of shapes, fits all sides of a shape together, in
+any rotation, and lets the likelihood decide between circle and polygon.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .arguments import as_points, as_positive
+from .lines import find_lines
+from .measure import LEAST_SPREAD, SIGMAS, Detection, as_detection, detection, spread_of
+from .paper import measure_as_published
+from .regroup import Group, explained, regrouped
+from .segmentation import check_count, segment
+
+Floats = NDArray[np.float64]
+
+SAME_SPREAD = 1.25  # fits are done anew when the spread comes out farther than this from what was supposed
+SPREAD_ROUNDS = 3
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How ``find_shapes`` works.
+
+    Parameters
+    ----------
+    method : {"joint", "published"}
+        ``"joint"``: all sides of a shape together, the likelihood decides. ``"published"``: the paper's.
+    noise_std : float, optional
+        Standard deviation of the sensor's ranges in metres; found from the points when not given.
+        Only for ``"joint"``.
+    line_threshold : float
+        A point lies on a line when it is at most this far from it, metres. Only for ``"published"``, like
+        all below: 5 cells of the grid.
+    line_trials : int
+        Samples for each line.
+    left_over : float
+        Lines are sought until at most this share of a cluster's points is left.
+    circle_trials : int
+        Samples for a circle.
+    """
+
+    method: Literal["joint", "published"] = "joint"
+    noise_std: float | None = None
+    line_threshold: float = 0.005
+    line_trials: int = 10_000
+    left_over: float = 0.1
+    circle_trials: int = 1000
+
+    def __post_init__(self) -> None:
+        if self.method not in ("joint", "published"):
+            raise ValueError(f'method must be "joint" or "published", got {self.method!r}')
+        if self.noise_std is not None:
+            as_positive(self.noise_std, "noise_std", zero=True)
+
+
+ROBUST = Settings()
+PAPER = Settings(method="published")
+
+
+def find_shapes(
+    points: ArrayLike,
+    n_shapes: int | None = None,
+    *,
+    settings: Settings = ROBUST,
+    rng: int | np.random.Generator | None = None,
+) -> list[Detection]:
+    """Find the shapes whose outlines the points lie on.
+
+    Parameters
+    ----------
+    points : array_like, shape (N, 2)
+        Metres, in any order; ``Grid.points()``.
+    n_shapes : int, optional
+        How many shapes there are; found when it is not given. ``PAPER`` then takes K-Means' best silhouette.
+    settings : Settings
+        ``ROBUST`` or ``PAPER``, or your own.
+    rng : int or numpy.random.Generator, optional
+        Seed or generator: the same seed gives the same shapes, to the last bit, for points in any order.
+
+    Returns
+    -------
+    list of Detection
+        From left to right; empty when there is nothing.
+
+    Raises
+    ------
+    ValueError
+        If points are not finite (N, 2), or more shapes are asked for than there are different points.
+
+    Examples
+    --------
+    >>> find_shapes([])
+    []
+    """
+    points = as_points(points)
+    if n_shapes is not None:
+        check_count(n_shapes, points)
+    if len(points) == 0 or n_shapes == 0:
+        return []
+    points = points[np.lexsort((points[:, 1], points[:, 0]))]  # the order of seeing leaves no trace
+    rng = np.random.default_rng(rng)
+    found = _as_published if settings.method == "published" else _jointly
+    return sorted(found(points, n_shapes, settings, rng), key=lambda d: tuple(d.shape.centroid))
+
+
+def _jointly(points: Floats, n_shapes: int | None, settings: Settings, rng: np.random.Generator) -> list[Detection]:
+    """Group, measure, ask for a second opinion: the default way."""
+    seed = int(rng.integers(2**63))
+    labels = segment(points, method="link")
+    together = [points[labels == label] for label in range(labels.max() + 1)]
+    groups, spread = _explain_all(together, settings, seed)
+    groups = regrouped(groups, spread, n_shapes, seed)
+    found = (as_detection(group.points, group.ranked, spread) for group in groups)
+    return [d for d in found if d is not None]
+
+
+def _explain_all(together: list[Floats], settings: Settings, seed: int) -> tuple[list[Group], float]:
+    """Explain each group; where the spread is not given, find it from the points, then from the fits."""
+    if settings.noise_std is not None:
+        spread = float(np.hypot(settings.noise_std, LEAST_SPREAD))
+        return [explained(points, spread, seed) for points in together], spread
+    spread = spread_of(np.vstack([np.empty((0, 2)), *together]))
+    for _ in range(SPREAD_ROUNDS):
+        groups = [explained(points, spread, seed) for points in together]
+        fitted = _spread_of_fits(groups)
+        if fitted is None or 1 / SAME_SPREAD <= fitted / spread <= SAME_SPREAD:
+            break
+        spread = fitted
+    return groups, spread
+
+
+def _spread_of_fits(groups: list[Group]) -> float | None:
+    """Return how far the points lie from the shapes that explain them; None without shapes.
+
+    1.4826 times the median distance is the standard deviation of Gaussian noise, and ignores strays.
+    """
+    distances = [g.shape.signed_distance(g.points) for g in groups if g.shape is not None]
+    if not distances:
+        return None
+    return max(LEAST_SPREAD, 1.4826 * float(np.median(np.abs(np.concatenate(distances)))))
+
+
+def _as_published(
+    points: Floats, n_shapes: int | None, settings: Settings, rng: np.random.Generator
+) -> list[Detection]:
+    """K-Means, line after line, extents and means: the paper's way."""
+    group_rng, line_rng, circle_rng = rng.spawn(3)
+    labels = segment(points, n_shapes, method="kmeans", rng=group_rng)
+    found = []
+    for label in range(labels.max() + 1):
+        cluster = points[labels == label]
+        lines = find_lines(
+            cluster,
+            settings.line_threshold,
+            left_over=settings.left_over,
+            trials=settings.line_trials,
+            refit=False,
+            rng=line_rng,
+        )
+        shape = measure_as_published(
+            cluster, len(lines), threshold=settings.line_threshold, trials=settings.circle_trials, rng=circle_rng
+        )
+        if shape is not None:
+            found.append(detection(shape, cluster, SIGMAS * settings.line_threshold))
+    return found
