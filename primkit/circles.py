@@ -56,7 +56,7 @@ def fit_circle(points: ArrayLike, method: Method = "geometric", *, weights: Arra
     Raises
     ------
     ValueError
-        If points are not finite (N, 2), or the method is unknown.
+        If points are not finite (N, 2), the method is unknown, or the weights are not N finite numbers >= 0.
 
     Notes
     -----
@@ -71,7 +71,7 @@ def fit_circle(points: ArrayLike, method: Method = "geometric", *, weights: Arra
     points = as_points(points)
     if method not in ("kasa", "pratt", "taubin", "geometric"):
         raise ValueError(f"method must be geometric, taubin, pratt or kasa, got {method!r}")
-    w = np.ones(len(points)) if weights is None else np.asarray(weights, dtype=float)
+    w = _as_weights(weights, len(points))
     if np.count_nonzero(w) < 3:
         return None
 
@@ -123,6 +123,17 @@ def find_circle(
     return None if consensus is None else Circle(consensus.params[:2], float(consensus.params[2]))
 
 
+def _as_weights(weights: ArrayLike | None, n: int) -> Floats:
+    """Return n weights, all alike when none are given."""
+    w = np.ones(n) if weights is None else np.asarray(weights, dtype=float)
+    if w.shape != (n,):
+        raise ValueError(f"weights must have shape ({n},), got shape {w.shape}")
+    bad = w[~(np.isfinite(w) & (w >= 0))]
+    if len(bad):
+        raise ValueError(f"weights must be finite numbers >= 0, got {bad[0]:g}")
+    return w
+
+
 def _algebraic(x: Floats, y: Floats, w: Floats, method: str) -> Floats | None:
     """Return centre and radius of the algebraic fit to centred, scaled points, shape (3,)."""
     z = x**2 + y**2
@@ -140,12 +151,15 @@ def _algebraic(x: Floats, y: Floats, w: Floats, method: str) -> Floats | None:
     else:
         mz, mx, my = w @ z, w @ x, w @ y
         norm = np.array([[4 * mz, 2 * mx, 2 * my, 0], [2 * mx, 1, 0, 0], [2 * my, 0, 1, 0], [0, 0, 0, 0]])
-    return _from_conic(_least_generalised(moments, norm))
+    p = _least_generalised(moments, norm)
+    return None if p is None else _from_conic(p)
 
 
-def _least_generalised(moments: Floats, norm: Floats) -> Floats:
-    """Return p that minimises p' M p under p' N p = 1, for M at least semi-definite, shape (4,)."""
+def _least_generalised(moments: Floats, norm: Floats) -> Floats | None:
+    """Return p that minimises p' M p under p' N p = 1, for M at least semi-definite, shape (4,); None for a choice."""
     values, axes = np.linalg.eigh(moments)
+    if values[1] <= 1e-14 * values[-1]:  # fewer than three different points: many circles go through them
+        return None
     if values[0] <= 1e-14 * values[-1]:  # the points lie exactly on a circle or a line
         return axes[:, 0]
     # M = L L', q = L' p: the largest eigenvalue of inv(L) N inv(L)' is the inverse of the least p' M p.
@@ -201,7 +215,8 @@ def _residuals(params: Floats, points: Floats) -> Floats:
 
 
 def _fit(points: Floats) -> Floats:
-    circle = fit_circle(points)
+    """Return Taubin's circle, shape (3,): one step, and as good as RANSAC needs; NaN when the points fix none."""
+    circle = fit_circle(points, "taubin")
     return np.full(3, np.nan) if circle is None else np.array([*circle.center, circle.radius])
 
 

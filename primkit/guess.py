@@ -30,6 +30,8 @@ LINE_TRIALS = 200  # a side with an eighth of the points is drawn with 95 % cert
 CLOSING_LINES = 3
 CLOSING_LENGTH = 0.012  # m: a shorter stretch of the hull is the usual distance between points
 SUBSETS_KEPT = 4
+QUARTERS = np.arange(4) * (np.pi / 2)
+FRAME_QUANTILE = 0.05  # the frame is drawn in by a twentieth of the points on each side: through the sides, not around
 SECTOR_TURNS = 4  # each turned by a quarter of a sector
 
 
@@ -54,16 +56,43 @@ def line_guesses(points: Floats, reach: float, *, rng: int | np.random.Generator
     """Return lines that may be sides, as one outline of M sides: RANSAC's, and the hull's over unseen stretches."""
     lines = [
         found.line
-        for found in find_lines(points, reach, left_over=0.03, most=LINES_TRIED, trials=LINE_TRIALS, rng=rng)
+        for found in find_lines(points, reach, left_over=0.0, most=LINES_TRIED, trials=LINE_TRIALS, rng=rng)
         if np.count_nonzero(found.inliers) >= 3
     ]
-    lines += _closing_lines(points)
+    lines += _closing_lines(points, reach)
     outward = [line.turned_round() if line.offset < 0 else line for line in lines]  # the origin is inside
     return from_angle_order(np.array([[line.angle for line in outward]]), np.array([[line.offset for line in outward]]))
 
 
-def _closing_lines(points: Floats, most: int = CLOSING_LINES) -> list[Line]:
-    """Return lines along the longest sides of the points' hull: where a side was not seen, the hull spans it."""
+def guess_rectangles(points: Floats, four_sided: Outlines) -> Outlines:
+    """Return guesses of rectangles: guesses with four sides put upright, and the frame around the points.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        Metres, around the origin.
+    four_sided : Outlines
+        Guesses with four sides; each keeps the bearing of its first.
+    """
+    upright = Outlines(four_sided.angles[:, :1] + QUARTERS, four_sided.offsets)
+    bearing = _frame_bearing(points)
+    heights = np.column_stack([points @ (np.cos(a), np.sin(a)) for a in bearing + QUARTERS[:2]])
+    low, high = np.quantile(heights, [FRAME_QUANTILE, 1 - FRAME_QUANTILE], axis=0)
+    frame = Outlines(bearing + QUARTERS[None], np.array([[high[0], high[1], -low[0], -low[1]]]))
+    return joined(upright, frame)
+
+
+def _frame_bearing(points: Floats) -> float:
+    """Return the bearing of a side of the smallest rectangle around the points, radians."""
+    import shapely
+
+    frame = shapely.get_coordinates(shapely.oriented_envelope(shapely.MultiPoint(points)))
+    along = frame[1] - frame[0]
+    return float(np.arctan2(-along[0], along[1]))
+
+
+def _closing_lines(points: Floats, reach: float) -> list[Line]:
+    """Return lines along the hull's longest unseen stretches: where a side was not seen, the hull spans it."""
     import shapely
 
     hull = shapely.MultiPoint(points).convex_hull
@@ -71,10 +100,17 @@ def _closing_lines(points: Floats, most: int = CLOSING_LINES) -> list[Line]:
         return []
     ring = shapely.get_coordinates(hull.exterior)
     along = np.diff(ring, axis=0)
-    length = np.hypot(*along.T)
-    longest = [i for i in np.argsort(-length, kind="stable")[:most] if length[i] > CLOSING_LENGTH]
     angles = np.arctan2(-along[:, 0], along[:, 1])
-    return [Line(float(angles[i]), float(ring[i] @ (np.cos(angles[i]), np.sin(angles[i])))) for i in longest]
+    lines = [Line(float(a), float(start @ (np.cos(a), np.sin(a)))) for a, start in zip(angles, ring, strict=False)]
+    unseen = np.array([_widest_gap(points, line, reach) for line in lines])
+    widest = np.argsort(-unseen, kind="stable")[:CLOSING_LINES]
+    return [lines[i] for i in widest if unseen[i] > CLOSING_LENGTH]
+
+
+def _widest_gap(points: Floats, line: Line, reach: float) -> float:
+    """Return the widest gap between neighbouring points along a line, metres."""
+    near = points[np.abs(line.signed_distance(points)) <= reach]
+    return float(np.diff(np.sort(near @ line.direction)).max(initial=0.0))
 
 
 def _best_subsets(points: Floats, sides: Outlines, k: int, reach: float, most: int = SUBSETS_KEPT) -> Outlines:

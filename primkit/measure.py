@@ -10,7 +10,8 @@ Out: ``Detection``: the shape, its points, how closely they lie to it, and how c
 >>> found.shape, found.margin > 100
 (Circle(center=(0.1, 0.2), radius=0.05), True)
 
-Source: the criterion is BIC, Schwarz (1978), "Estimating the dimension of a model".
+Source: the criterion is BIC, Schwarz (1978), "Estimating the dimension of a model", in the form of Haughton (1988),
+"On the choice of a model to fit data from an exponential family".
 """
 
 from __future__ import annotations
@@ -22,11 +23,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from .arguments import as_points, as_positive
 from .circles import find_circle, fit_circle
-from .guess import guess_outlines, line_guesses
+from .guess import guess_outlines, guess_rectangles, line_guesses
 from .lines import find_lines
 from .outlines import Outlines
 from .refine import GHOST_AREA, GHOSTS, refine_hard, refine_soft, shares, truncated_cost
-from .shapes import Circle, Kind, Shape
+from .shapes import KINDS, Circle, Kind, Shape
 
 Floats = NDArray[np.float64]
 
@@ -41,7 +42,10 @@ LEAST_ARC = np.radians(60)  # a shorter arc fits a wide range of circles
 GAP = 0.012  # m: a stretch of outline within this of a point counts as seen
 
 CIRCLE_TRIALS = 100  # with four fifths of the points on the circle, one sample in two is clean
-CIRCLE_ROUNDS = 5
+CIRCLE_ROUNDS = 4
+WALL_TRIALS = 100
+# A candidate that is this much worse (in BIC) before the last polish is not going to win by it.
+CONTENDER = 100.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,15 +81,33 @@ class Detection:
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """One explanation of a cluster: a shape (None for a bare wall) and its BIC (smaller is better)."""
+    """One explanation of a cluster.
 
-    shape: Shape | None
+    Parameters
+    ----------
+    figure : Circle, Outlines (one row) or None
+        What the points would lie on; None for a bare wall.
+    square : bool
+        Whether an outline of four sides keeps right angles.
+    bic : float
+        Bayesian information criterion; smaller is better.
+    """
+
+    figure: Circle | Outlines | None
+    square: bool
     bic: float
+
+    @property
+    def shape(self) -> Shape | None:
+        """The figure as a shape; None for a bare wall."""
+        return self.figure.polygon() if isinstance(self.figure, Outlines) else self.figure
 
     @property
     def kind(self) -> str:
         """The shape's kind, or ``"wall"``."""
-        return "wall" if self.shape is None else self.shape.kind
+        if isinstance(self.figure, Outlines):
+            return KINDS[self.figure.angles.shape[1] - 2]
+        return "wall" if self.figure is None else "circle"
 
 
 def measure_shape(
@@ -206,22 +228,80 @@ def candidates(points: Floats, spread: float, *, rng: int | np.random.Generator 
     Returns
     -------
     list of Candidate
-        A wall, a circle, and polygons of three to five sides, as far as each can be fitted.
+        A wall, a circle, and polygons of three to five sides, as far as each can be fitted. Those that come
+        near the best are fitted to the last digit.
     """
     if len(points) < LEAST_POINTS:
         return []
-    circle_rng, line_rng = np.random.default_rng(rng).spawn(2)
     middle = points.mean(axis=0)
     local = points - middle  # digits are not lost far from the origin
+    rough = sorted(_rough(local, spread, np.random.default_rng(rng)), key=lambda c: c.bic)
+    ranked = [_polished(local, c, spread) if c.bic <= rough[0].bic + CONTENDER else c for c in rough]
+    return [_moved(c, middle) for c in sorted(ranked, key=lambda c: c.bic)]
 
-    found = [_wall(local, spread), _circle(local, spread, circle_rng), *_polygons(local, spread, line_rng)]
-    ranked = sorted((c for c in found if c is not None), key=lambda c: c.bic)
-    return [Candidate(c.shape and c.shape.moved(middle), c.bic) for c in ranked]
+
+def _rough(points: Floats, spread: float, rng: np.random.Generator) -> list[Candidate]:
+    """Return the explanations that RANSAC and a few rounds of giving points back lead to, in any order."""
+    circle_rng, line_rng, wall_rng = rng.spawn(3)
+    reach = SIGMAS * spread
+    found = [_wall(points, spread, wall_rng)]
+    circle = find_circle(points, reach, trials=CIRCLE_TRIALS, rng=circle_rng)
+    if circle is not None and circle.radius <= MOST_RADIUS:
+        found.append(_judged(points, circle, False, spread))
+    sides = line_guesses(points, reach, rng=line_rng)
+    for k in (3, 4, 5):
+        guess = guess_outlines(points, sides, k, reach)
+        starts = [(guess, False)]
+        if k == 4:
+            starts.append((guess_rectangles(points, guess), True))
+        for start, square in starts:
+            refined = refine_hard(points, start, reach, square=square)
+            refined = refined[refined.sound()]
+            if len(refined):
+                best = int(np.argmin(truncated_cost(points, refined, reach)))
+                found.append(_judged(points, refined[best : best + 1], square, spread))
+    return found
 
 
-def _bic(log_likelihood: float, n_params: int, n_points: int) -> float:
-    """Return the Bayesian information criterion: -2 ln L + q ln N."""
-    return float(-2 * log_likelihood + n_params * np.log(n_points))
+def _wall(points: Floats, spread: float, rng: np.random.Generator) -> Candidate:
+    """Explain the points by one straight wall: four numbers, its line's two and its ends."""
+    best = find_lines(points, SIGMAS * spread, most=1, trials=WALL_TRIALS, rng=rng)[0]
+    length = max(float(np.ptp(points[best.inliers] @ best.line.direction)), spread)
+    density = _density(best.line.signed_distance(points), length, spread)
+    return Candidate(None, False, _bic(_log_likelihood(density), 4, len(points)))
+
+
+def _polished(points: Floats, rough: Candidate, spread: float) -> Candidate:
+    """Fit a candidate to the last digit: each point counts for it as far as it is likely to come from it."""
+    figure = rough.figure
+    if isinstance(figure, Circle):
+        figure = _polished_circle(points, figure, spread)
+        if figure is None or 2 * np.pi * seen_shares(figure, points)[0] < LEAST_ARC:
+            return Candidate(None, False, float("inf"))
+    elif isinstance(figure, Outlines):
+        settled = refine_soft(points, figure, spread, square=rough.square)
+        figure = settled if settled.sound()[0] else figure
+    return rough if figure is None else _judged(points, figure, rough.square, spread)
+
+
+def _polished_circle(points: Floats, circle: Circle, spread: float) -> Circle | None:
+    """Return the geometric fit in which points from nowhere do not count; None when it grows beyond a board."""
+    for _ in range(CIRCLE_ROUNDS):
+        density = _density(circle.signed_distance(points), circle.perimeter, spread)
+        fitted = fit_circle(points, weights=density / (density + GHOSTS / GHOST_AREA))
+        if fitted is None or fitted.radius > MOST_RADIUS:
+            return None
+        circle = fitted
+    return circle
+
+
+def _judged(points: Floats, figure: Circle | Outlines, square: bool, spread: float) -> Candidate:
+    """Return a figure with its BIC."""
+    if isinstance(figure, Circle):
+        fit = _log_likelihood(_density(figure.signed_distance(points), figure.perimeter, spread))
+        return Candidate(figure, False, _bic(fit, 3, len(points)))
+    fit = float(shares(points, figure, spread)[1][0])
+    return Candidate(figure, square, _bic(fit, 5 if square else 2 * figure.angles.shape[1], len(points)))
 
 
 def _density(distance: Floats, length: float, spread: float) -> Floats:
@@ -230,63 +310,24 @@ def _density(distance: Floats, length: float, spread: float) -> Floats:
     return (1 - GHOSTS) * across / length
 
 
-def _log_likelihood(distance: Floats, length: float, spread: float) -> float:
+def _log_likelihood(density: Floats) -> float:
     """Return how likely the points are, those from nowhere included."""
-    return float(np.log(_density(distance, length, spread) + GHOSTS / GHOST_AREA).sum())
+    return float(np.log(density + GHOSTS / GHOST_AREA).sum())
 
 
-def _wall(points: Floats, spread: float) -> Candidate | None:
-    """Explain the points by one straight wall: three numbers, with the place of its two ends bounding it."""
-    lines = find_lines(points, SIGMAS * spread, most=1, trials=CIRCLE_TRIALS, rng=0)
-    if not lines:
-        return None
-    line, inliers = lines[0].line, lines[0].inliers
-    length = max(float(np.ptp(points[inliers] @ line.direction)), spread)
-    fit = _log_likelihood(line.signed_distance(points), length, spread)
-    return Candidate(None, _bic(fit, 4, len(points)))
+def _bic(log_likelihood: float, n_params: int, n_points: int) -> float:
+    """Return the Bayesian information criterion in Haughton's form: -2 ln L + q ln(N / 2 pi).
+
+    The usual form leaves out the 2 pi, which does not matter for thousands of points but does for two hundred.
+    """
+    return float(-2 * log_likelihood + n_params * np.log(n_points / (2 * np.pi)))
 
 
-def _circle(points: Floats, spread: float, rng: np.random.Generator) -> Candidate | None:
-    """Explain the points by a circle: RANSAC, then the geometric fit to its inliers until they settle."""
-    circle = find_circle(points, SIGMAS * spread, trials=CIRCLE_TRIALS, rng=rng)
-    for _ in range(CIRCLE_ROUNDS):  # every point counts as far as it is likely to come from the circle
-        if circle is None or circle.radius > MOST_RADIUS:
-            return None
-        density = _density(circle.signed_distance(points), circle.perimeter, spread)
-        circle = fit_circle(points, weights=density / (density + GHOSTS / GHOST_AREA))
-    if circle is None or circle.radius > MOST_RADIUS:
-        return None
-    if 2 * np.pi * seen_shares(circle, points)[0] < LEAST_ARC:
-        return None
-    fit = _log_likelihood(circle.signed_distance(points), circle.perimeter, spread)
-    return Candidate(circle, _bic(fit, 3, len(points)))
-
-
-def _polygons(points: Floats, spread: float, rng: np.random.Generator) -> list[Candidate]:
-    """Explain the points by polygons of three to five sides, and by a rectangle."""
-    sides = line_guesses(points, SIGMAS * spread, rng=rng)
-    found = []
-    for k in (3, 4, 5):
-        guess = guess_outlines(points, sides, k, SIGMAS * spread)
-        found.append(_polygon(points, guess, spread, square=False))
-        if k == 4:
-            upright = Outlines(guess.angles[:, :1] + np.arange(4) * (np.pi / 2), guess.offsets)
-            found.append(_polygon(points, upright, spread, square=True))
-    return [candidate for candidate in found if candidate is not None]
-
-
-def _polygon(points: Floats, guess: Outlines, spread: float, *, square: bool) -> Candidate | None:
-    """Refine all guesses together and return the best as a candidate; None when none is sound."""
-    if len(guess) == 0:
-        return None
-    refined = refine_hard(points, guess, SIGMAS * spread, square=square)
-    refined = refined[refined.sound()]
-    if len(refined) == 0:
-        return None
-    best = np.argmin(truncated_cost(points, refined, SIGMAS * spread))
-    outline = refine_soft(points, refined[best : best + 1], spread, square=square)
-    if not outline.sound()[0]:
-        return None
-    _, log_likelihood = shares(points, outline, spread)
-    n_params = 5 if square else 2 * outline.angles.shape[1]
-    return Candidate(outline.polygon(), _bic(float(log_likelihood[0]), n_params, len(points)))
+def _moved(candidate: Candidate, offset: Floats) -> Candidate:
+    """Return the candidate, shifted back to where its points are."""
+    figure = candidate.figure
+    if isinstance(figure, Circle):
+        figure = figure.moved(offset)
+    elif isinstance(figure, Outlines):
+        figure = figure.moved(offset)
+    return Candidate(figure, candidate.square, candidate.bic)

@@ -93,6 +93,10 @@ class Outlines:
         bends = ((turn >= LEAST_TURN) & (turn <= MOST_TURN)).all(axis=1)
         return once_round & bends & (end - begin >= LEAST_SIDE).all(axis=1)
 
+    def moved(self, offset: Floats) -> Outlines:
+        """Return the outlines shifted by ``offset``, shape (2,), metres."""
+        return Outlines(self.angles, self.offsets + np.cos(self.angles) * offset[0] + np.sin(self.angles) * offset[1])
+
     def polygon(self, index: int = 0) -> Polygon:
         """Return one of the outlines as a Polygon."""
         return Polygon(self.corners()[index])

@@ -55,12 +55,15 @@ def refine_hard(points: Floats, guess: Outlines, reach: float, *, square: bool =
     Outlines
         The C guesses after a few rounds; some may no longer be ``sound``.
     """
-    sides = np.arange(guess.angles.shape[1])
+    sides, before = np.arange(guess.angles.shape[1]), None
     for _ in range(HARD_ROUNDS):
         r = guess.distances(points)
         owner = r.argmax(axis=2)
         near = np.abs(np.take_along_axis(r, owner[..., None], axis=2)) <= reach
-        guess = refit(points, ((owner[..., None] == sides) & near).astype(float), guess, square=square)
+        given = (owner[..., None] == sides) & near
+        if before is not None and np.array_equal(given, before):
+            break
+        before, guess = given, refit(points, given.astype(float), guess, square=square)
     return guess
 
 
