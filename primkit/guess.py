@@ -31,7 +31,9 @@ CLOSING_LINES = 3
 CLOSING_LENGTH = 0.012  # m: a shorter stretch of the hull is the usual distance between points
 SUBSETS_KEPT = 4
 QUARTERS = np.arange(4) * (np.pi / 2)
-FRAME_QUANTILE = 0.05  # the frame is drawn in by a twentieth of the points on each side: through the sides, not around
+# The frame is drawn in by a twentieth of the points, to lie in the sides and not around them; and once not at all, for
+# sides that were not seen: they lie where the seen ones end.
+FRAME_QUANTILES = np.array([0.05, 0.0])
 SECTOR_TURNS = 4  # each turned by a quarter of a sector
 
 
@@ -64,31 +66,24 @@ def line_guesses(points: Floats, reach: float, *, rng: int | np.random.Generator
     return from_angle_order(np.array([[line.angle for line in outward]]), np.array([[line.offset for line in outward]]))
 
 
-def guess_rectangles(points: Floats, four_sided: Outlines) -> Outlines:
-    """Return guesses of rectangles: guesses with four sides put upright, and the frame around the points.
+def guess_rectangles(points: Floats, sides: Outlines, four_sided: Outlines) -> Outlines:
+    """Return guesses of rectangles: guesses with four sides put upright, and frames around the points.
 
     Parameters
     ----------
     points : array, shape (N, 2)
         Metres, around the origin.
+    sides : Outlines
+        One row of lines that may be sides; a frame is laid along each.
     four_sided : Outlines
         Guesses with four sides; each keeps the bearing of its first.
     """
     upright = Outlines(four_sided.angles[:, :1] + QUARTERS, four_sided.offsets)
-    bearing = _frame_bearing(points)
-    heights = np.column_stack([points @ (np.cos(a), np.sin(a)) for a in bearing + QUARTERS[:2]])
-    low, high = np.quantile(heights, [FRAME_QUANTILE, 1 - FRAME_QUANTILE], axis=0)
-    frame = Outlines(bearing + QUARTERS[None], np.array([[high[0], high[1], -low[0], -low[1]]]))
-    return joined(upright, frame)
-
-
-def _frame_bearing(points: Floats) -> float:
-    """Return the bearing of a side of the smallest rectangle around the points, radians."""
-    import shapely
-
-    frame = shapely.get_coordinates(shapely.oriented_envelope(shapely.MultiPoint(points)))
-    along = frame[1] - frame[0]
-    return float(np.arctan2(-along[0], along[1]))
+    angles = np.repeat(sides.angles[0, :, None] + QUARTERS, len(FRAME_QUANTILES), axis=0)
+    heights = points @ np.stack([np.cos(angles), np.sin(angles)], axis=1)  # (2 M, N, 4)
+    low_or_full = np.tile(FRAME_QUANTILES, sides.angles.shape[1])
+    frames = [np.quantile(h, 1 - q, axis=0) for h, q in zip(heights, low_or_full, strict=True)]
+    return joined(upright, Outlines(angles, np.array(frames).reshape(-1, 4)))
 
 
 def _closing_lines(points: Floats, reach: float) -> list[Line]:

@@ -10,8 +10,8 @@ Out: ``Detection``: the shape, its points, how closely they lie to it, and how c
 >>> found.shape, found.margin > 100
 (Circle(center=(0.1, 0.2), radius=0.05), True)
 
-Source: the criterion is BIC, Schwarz (1978), "Estimating the dimension of a model", in the form of Haughton (1988),
-"On the choice of a model to fit data from an exponential family".
+Source: the criterion is the evidence, MacKay (1992), "Bayesian interpolation". Where the points narrow each number
+down no farther than to the noise of one of them, it is BIC, Schwarz (1978), "Estimating the dimension of a model".
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from .circles import find_circle, fit_circle
 from .guess import guess_outlines, guess_rectangles, line_guesses
 from .lines import find_lines
 from .outlines import Outlines
-from .refine import GHOST_AREA, GHOSTS, refine_hard, refine_soft, shares, truncated_cost
-from .shapes import KINDS, Circle, Kind, Shape
+from .refine import GHOST_AREA, GHOSTS, OUTLINE_LENGTH, refine_hard, refine_soft, shares, truncated_cost
+from .shapes import KINDS, Circle, Kind, Polygon, Shape
 
 Floats = NDArray[np.float64]
 
@@ -44,7 +44,13 @@ GAP = 0.012  # m: a stretch of outline within this of a point counts as seen
 CIRCLE_TRIALS = 100  # with four fifths of the points on the circle, one sample in two is clean
 CIRCLE_ROUNDS = 4
 WALL_TRIALS = 100
-# A candidate that is this much worse (in BIC) before the last polish is not going to win by it.
+# What is supposed before the points are looked at. Each number of a shape is known to about a centimetre. An outline
+# is seen nearly all around: each metre that was not seen is as unlikely as one in e^40. And four sides without right
+# angles are none of the board's shapes: one in e^10.
+PRIOR_WIDTH = 0.01
+UNSEEN_COST = 80.0
+CROOKED_COST = 20.0
+# A candidate that is this much worse (in cost) before the last polish is not going to win by it.
 CONTENDER = 100.0
 
 
@@ -61,8 +67,8 @@ class Detection:
     rms : float
         Root mean square distance of those points from the outline, metres.
     margin : float
-        How much better this shape explains the points than the best of another kind: the difference
-        in BIC; above 10 is very strong (Kass and Raftery, 1995). Infinite when there is no rival.
+        How much better this shape explains the points than the best of another kind: twice the logarithm
+        of the Bayes factor; above 10 is very strong (Kass and Raftery, 1995). Infinite without a rival.
     seen : tuple of float
         The share of each side (or of the whole circle) that has points near it, 0 to 1.
     """
@@ -89,13 +95,13 @@ class Candidate:
         What the points would lie on; None for a bare wall.
     square : bool
         Whether an outline of four sides keeps right angles.
-    bic : float
-        Bayesian information criterion; smaller is better.
+    cost : float
+        -2 times the logarithm of the evidence; smaller is better. See ``_cost``.
     """
 
     figure: Circle | Outlines | None
     square: bool
-    bic: float
+    cost: float
 
     @property
     def shape(self) -> Shape | None:
@@ -150,8 +156,8 @@ def as_detection(points: Floats, ranked: list[Candidate], spread: float) -> Dete
     shape = ranked[0].shape if ranked else None
     if shape is None:
         return None
-    rival = next((other.bic for other in ranked if other.kind != shape.kind), float("inf"))
-    return detection(shape, points, SIGMAS * spread, margin=rival - ranked[0].bic)
+    rival = next((other.cost for other in ranked if other.kind != shape.kind), float("inf"))
+    return detection(shape, points, SIGMAS * spread, margin=rival - ranked[0].cost)
 
 
 def spread_of(points: ArrayLike) -> float:
@@ -231,13 +237,13 @@ def candidates(points: Floats, spread: float, *, rng: int | np.random.Generator 
         A wall, a circle, and polygons of three to five sides, as far as each can be fitted. Those that come
         near the best are fitted to the last digit.
     """
-    if len(points) < LEAST_POINTS:
+    if len(np.unique(points, axis=0)) < LEAST_POINTS:
         return []
     middle = points.mean(axis=0)
     local = points - middle  # digits are not lost far from the origin
-    rough = sorted(_rough(local, spread, np.random.default_rng(rng)), key=lambda c: c.bic)
-    ranked = [_polished(local, c, spread) if c.bic <= rough[0].bic + CONTENDER else c for c in rough]
-    return [_moved(c, middle) for c in sorted(ranked, key=lambda c: c.bic)]
+    rough = sorted(_rough(local, spread, np.random.default_rng(rng)), key=lambda c: c.cost)
+    ranked = [_polished(local, c, spread) if c.cost <= rough[0].cost + CONTENDER else c for c in rough]
+    return [_moved(c, middle) for c in sorted(ranked, key=lambda c: c.cost)]
 
 
 def _rough(points: Floats, spread: float, rng: np.random.Generator) -> list[Candidate]:
@@ -253,7 +259,7 @@ def _rough(points: Floats, spread: float, rng: np.random.Generator) -> list[Cand
         guess = guess_outlines(points, sides, k, reach)
         starts = [(guess, False)]
         if k == 4:
-            starts.append((guess_rectangles(points, guess), True))
+            starts.append((guess_rectangles(points, sides, guess), True))
         for start, square in starts:
             refined = refine_hard(points, start, reach, square=square)
             refined = refined[refined.sound()]
@@ -264,11 +270,11 @@ def _rough(points: Floats, spread: float, rng: np.random.Generator) -> list[Cand
 
 
 def _wall(points: Floats, spread: float, rng: np.random.Generator) -> Candidate:
-    """Explain the points by one straight wall: four numbers, its line's two and its ends."""
+    """Explain the points by one straight wall: its line and its two ends; its back is not seen."""
     best = find_lines(points, SIGMAS * spread, most=1, trials=WALL_TRIALS, rng=rng)[0]
-    length = max(float(np.ptp(points[best.inliers] @ best.line.direction)), spread)
-    density = _density(best.line.signed_distance(points), length, spread)
-    return Candidate(None, False, _bic(_log_likelihood(density), 4, len(points)))
+    length = float(np.ptp(points[best.inliers] @ best.line.direction))
+    fit = _log_likelihood(best.line.signed_distance(points), spread)
+    return Candidate(None, False, _cost(fit, 4, length, len(points), spread))
 
 
 def _polished(points: Floats, rough: Candidate, spread: float) -> Candidate:
@@ -287,7 +293,7 @@ def _polished(points: Floats, rough: Candidate, spread: float) -> Candidate:
 def _polished_circle(points: Floats, circle: Circle, spread: float) -> Circle | None:
     """Return the geometric fit in which points from nowhere do not count; None when it grows beyond a board."""
     for _ in range(CIRCLE_ROUNDS):
-        density = _density(circle.signed_distance(points), circle.perimeter, spread)
+        density = _density(circle.signed_distance(points), spread)
         fitted = fit_circle(points, weights=density / (density + GHOSTS / GHOST_AREA))
         if fitted is None or fitted.radius > MOST_RADIUS:
             return None
@@ -296,31 +302,42 @@ def _polished_circle(points: Floats, circle: Circle, spread: float) -> Circle | 
 
 
 def _judged(points: Floats, figure: Circle | Outlines, square: bool, spread: float) -> Candidate:
-    """Return a figure with its BIC."""
+    """Return a figure with its cost."""
     if isinstance(figure, Circle):
-        fit = _log_likelihood(_density(figure.signed_distance(points), figure.perimeter, spread))
-        return Candidate(figure, False, _bic(fit, 3, len(points)))
-    fit = float(shares(points, figure, spread)[1][0])
-    return Candidate(figure, square, _bic(fit, 5 if square else 2 * figure.angles.shape[1], len(points)))
+        fit, n_params = _log_likelihood(figure.signed_distance(points), spread), 3
+    else:
+        fit, n_params = float(shares(points, figure, spread)[1][0]), 5 if square else 2 * figure.angles.shape[1]
+    shape = figure.polygon() if isinstance(figure, Outlines) else figure
+    unseen = _unseen_length(shape, points[np.abs(shape.signed_distance(points)) <= SIGMAS * spread])
+    cost = _cost(fit, n_params, unseen, len(points), spread)
+    return Candidate(figure, square, cost + (CROOKED_COST if n_params == 8 else 0.0))
 
 
-def _density(distance: Floats, length: float, spread: float) -> Floats:
-    """Return the density of points that come from anywhere along a smooth outline, as in ``refine.shares``."""
-    across = np.exp(-0.5 * (distance / spread) ** 2) / (np.sqrt(2 * np.pi) * spread)
-    return (1 - GHOSTS) * across / length
+def _cost(log_likelihood: float, n_params: int, unseen: float, n_points: int, spread: float) -> float:
+    """Return -2 times the logarithm of the evidence (Laplace's approximation; MacKay, 1992).
 
-
-def _log_likelihood(density: Floats) -> float:
-    """Return how likely the points are, those from nowhere included."""
-    return float(np.log(density + GHOSTS / GHOST_AREA).sum())
-
-
-def _bic(log_likelihood: float, n_params: int, n_points: int) -> float:
-    """Return the Bayesian information criterion in Haughton's form: -2 ln L + q ln(N / 2 pi).
-
-    The usual form leaves out the 2 pi, which does not matter for thousands of points but does for two hundred.
+    Each number that is fitted costs the logarithm of how far the points narrow it down, from ``PRIOR_WIDTH``
+    before to ``spread / sqrt(N)`` after; and each metre of outline that was not seen has its price.
     """
-    return float(-2 * log_likelihood + n_params * np.log(n_points / (2 * np.pi)))
+    narrowed = n_points / (2 * np.pi) * (1 + (PRIOR_WIDTH / spread) ** 2)
+    return float(-2 * log_likelihood + n_params * np.log(narrowed) + UNSEEN_COST * unseen)
+
+
+def _log_likelihood(distance: Floats, spread: float) -> float:
+    """Return how likely the points are at these distances from a smooth outline, as in ``refine.shares``."""
+    return float(np.log(_density(distance, spread) + GHOSTS / GHOST_AREA).sum())
+
+
+def _density(distance: Floats, spread: float) -> Floats:
+    """Return the density of points that come from an outline, shape (N,), per square metre."""
+    across = np.exp(-0.5 * (distance / spread) ** 2) / (np.sqrt(2 * np.pi) * spread)
+    return (1 - GHOSTS) * across / OUTLINE_LENGTH
+
+
+def _unseen_length(shape: Shape, points: Floats) -> float:
+    """Return how much of the outline has no point near it, metres."""
+    lengths = shape.sides if isinstance(shape, Polygon) else np.array([shape.perimeter])
+    return float(lengths @ (1 - np.array(seen_shares(shape, points))))
 
 
 def _moved(candidate: Candidate, offset: Floats) -> Candidate:
@@ -330,4 +347,4 @@ def _moved(candidate: Candidate, offset: Floats) -> Candidate:
         figure = figure.moved(offset)
     elif isinstance(figure, Outlines):
         figure = figure.moved(offset)
-    return Candidate(figure, candidate.square, candidate.bic)
+    return Candidate(figure, candidate.square, candidate.cost)

@@ -30,6 +30,9 @@ Floats = NDArray[np.float64]
 LEAST_SHARE = 2.0
 # Share of returns that come from nowhere, and the area [m^2] over which those near a shape are spread.
 GHOSTS, GHOST_AREA = 0.02, 0.05
+# Length [m] over which the others are spread. One length for all outlines: were it each outline's own, points seen on
+# a half of a circle would speak for whatever shape closes that half on the shortest way.
+OUTLINE_LENGTH = 0.5
 
 HARD_ROUNDS = 8
 SOFT_ROUNDS = 30
@@ -110,8 +113,8 @@ def truncated_cost(points: Floats, outlines: Outlines, reach: float) -> Floats:
 def shares(points: Floats, outlines: Outlines, spread: float) -> tuple[Floats, Floats]:
     """Return to what share each point belongs to each side, and how likely the points are.
 
-    The model: a point comes from anywhere along the outline with the same chance, and is moved by Gaussian
-    noise of ``spread``; a few come from nowhere.
+    The model: a point comes from anywhere along the outline, and is moved by Gaussian noise of ``spread``; a
+    few come from nowhere.
 
     Returns
     -------
@@ -125,7 +128,7 @@ def shares(points: Floats, outlines: Outlines, spread: float) -> tuple[Floats, F
     t = outlines.along(points) - begin[:, None, :]
     within = ndtr(t / spread) - ndtr((t - length) / spread)  # a side's ends, blurred by the noise
     across = np.exp(-0.5 * (outlines.distances(points) / spread) ** 2) / (np.sqrt(2 * np.pi) * spread)
-    density = (1 - GHOSTS) * np.maximum(within, 0.0) * across / length.sum(axis=2, keepdims=True)
+    density = (1 - GHOSTS) * np.maximum(within, 0.0) * across / OUTLINE_LENGTH
     total = density.sum(axis=2) + GHOSTS / GHOST_AREA
     return density / total[..., None], np.log(total).sum(axis=1)
 

@@ -13,7 +13,7 @@ Out: groups again, each with its explanations.
 >>> len(regrouped(halves, 0.0004))
 1
 
-Source: comparing explanations of different size by BIC, as X-Means does: Pelleg and Moore (2000), "X-means:
+Source: splitting and merging by what explains the points better, as X-Means does: Pelleg and Moore (2000), "X-means:
 extending K-means with efficient estimation of the number of clusters".
 """
 
@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .measure import SIGMAS, Candidate, candidates, seen_shares
+from .refine import GHOST_AREA, GHOSTS
 from .segmentation import LEAST_GROUP, kmeans
 from .shapes import Polygon, Shape
 
@@ -50,9 +51,9 @@ class Group:
         return self.ranked[0].shape if self.ranked else None
 
     @property
-    def bic(self) -> float:
-        """BIC of the best explanation; smaller is better. Too few points for any: each comes from nowhere."""
-        return self.ranked[0].bic if self.ranked else 0.0
+    def cost(self) -> float:
+        """Cost of the best explanation; smaller is better. Too few points for any: each comes from nowhere."""
+        return self.ranked[0].cost if self.ranked else float(-2 * len(self.points) * np.log(GHOSTS / GHOST_AREA))
 
 
 def explained(points: Floats, spread: float, seed: int = 0) -> Group:
@@ -94,7 +95,7 @@ def _split_all(groups: list[Group], spread: float, n_shapes: int | None, seed: i
     """Split the group that gains most by it, again and again."""
     halves = {id(g): _halves(g, spread, n_shapes, seed) for g in groups}
     while n_shapes is None or len(groups) < n_shapes:
-        gains = [_cost_apart(*halves[id(g)]) - g.bic if halves[id(g)] else np.inf for g in groups]
+        gains = [sum(h.cost for h in halves[id(g)]) - g.cost if halves[id(g)] else np.inf for g in groups]
         best = int(np.argmin(gains)) if groups else 0
         if not groups or not gains[best] < (0 if n_shapes is None else np.inf):
             break
@@ -105,8 +106,10 @@ def _split_all(groups: list[Group], spread: float, n_shapes: int | None, seed: i
 
 
 def _halves(group: Group, spread: float, n_shapes: int | None, seed: int) -> tuple[Group, ...]:
-    """Return a group as two, cut by K-Means; nothing when it is too small or well explained as it is."""
-    if len(group.points) < 2 * LEAST_GROUP or (n_shapes is None and _share_on_shape(group, spread) >= WELL_EXPLAINED):
+    """Return a group as two, cut by K-Means; nothing when it is too small, or well explained as it is."""
+    if not group.ranked or len(group.points) < 2 * LEAST_GROUP:
+        return ()
+    if n_shapes is None and _share_on_shape(group, spread) >= WELL_EXPLAINED:
         return ()
     labels = kmeans(group.points, 2, rng=seed)
     return tuple(explained(group.points[labels == label], spread, seed) for label in (0, 1))
@@ -130,20 +133,13 @@ def _merge_all(groups: list[Group], spread: float, n_shapes: int | None, seed: i
                 together = np.vstack([a.points, b.points])
                 merged[id(a), id(b)] = explained(together, spread, seed) if plausible else None
             one = merged[id(a), id(b)]
-            if one is not None and one.ranked and one.bic - _cost_apart(a, b) < best_gain:
-                best, best_gain = (a, b, one), one.bic - _cost_apart(a, b)
+            if one is not None and one.ranked and one.cost - a.cost - b.cost < best_gain:
+                best, best_gain = (a, b, one), one.cost - a.cost - b.cost
         if best is None:
             break
         a, b, one = best
         groups = [one if g is a else g for g in groups if g is not b]
     return groups
-
-
-def _cost_apart(a: Group, b: Group) -> float:
-    """Return the BIC of two groups as two shapes: each point also has to come from its own of the two."""
-    n, m = len(a.points), len(b.points)
-    mixing = n * np.log(n / (n + m)) + m * np.log(m / (n + m))
-    return float(a.bic + b.bic - 2 * mixing)
 
 
 def _may_be_one(a: Group, b: Group, spread: float) -> bool:

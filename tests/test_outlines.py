@@ -1,0 +1,75 @@
+"""Outlines by their sides: distances, corners, soundness."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import primkit as pk
+from primkit.outlines import Outlines, from_angle_order, joined
+
+
+def outline_of(polygon):
+    """Return a polygon as one row of sides in normal form, through its vertices: no code shared with corners()."""
+    normals = polygon.normals
+    offsets = (normals * polygon.vertices).sum(axis=1)
+    return from_angle_order(np.arctan2(normals[:, 1], normals[:, 0])[None], offsets[None])
+
+
+@given(st.integers(0, 10_000))
+def test_corners_come_back_from_the_sides_of_any_polygon(seed):
+    kind = ("triangle", "rectangle", "pentagon")[seed % 3]
+    polygon = pk.random_world(1, style="free", kinds=[kind], rng=seed).shapes[0]
+    outline = outline_of(polygon)
+    corners = outline.corners()[0]
+    nearest = np.linalg.norm(corners[:, None] - polygon.vertices, axis=2).min(axis=0)
+    assert nearest.max() < 1e-12
+    assert outline.sound().tolist() == [True]
+    assert outline.polygon().area == pytest.approx(polygon.area, rel=1e-12)
+
+
+@given(st.integers(0, 10_000))
+def test_the_largest_distance_over_the_sides_is_the_signed_distance_inside(seed):
+    polygon = pk.random_world(1, style="free", kinds=["pentagon"], rng=seed).shapes[0]
+    rng = np.random.default_rng(seed)
+    points = polygon.centroid + rng.uniform(-0.02, 0.02, (50, 2))
+    inside = polygon.signed_distance(points) < 0
+    ours = outline_of(polygon).distances(points)[0].max(axis=1)
+    np.testing.assert_allclose(ours[inside], polygon.signed_distance(points)[inside], atol=1e-15)
+
+
+def test_spans_are_the_sides_lengths():
+    polygon = pk.Polygon([(0, 0), (0.2, 0), (0.2, 0.1), (0, 0.1)])
+    begin, end = outline_of(polygon).spans()
+    assert sorted((end - begin)[0].round(12)) == [0.1, 0.1, 0.2, 0.2]
+
+
+SQUARE = np.arange(4) * np.pi / 2
+UNSOUND = {
+    "sides in clockwise order": (SQUARE[::-1], [0.1] * 4),
+    "all normals on one side: the outline is open": ([0.0, 0.4, 0.8, 1.2], [0.1] * 4),
+    "two parallel neighbours": ([0.0, 0.0, 2.0, 4.0], [0.1, 0.1, 0.1, 0.1]),
+    "a side cut away by its neighbours": (SQUARE, [0.1, 0.1, -0.2, 0.1]),
+    "a side of 1 cm": (SQUARE, [0.005, 0.1, 0.005, 0.1]),
+    "a corner that bends by 10 degrees": (np.radians([0, 10, 130, 250]), [0.1] * 4),
+    "twice round": (np.radians([0, 144, 288, 72, 216]), [0.1] * 5),
+}
+
+
+@pytest.mark.parametrize(("angles", "offsets"), UNSOUND.values(), ids=UNSOUND)
+def test_unsound(angles, offsets):
+    outline = Outlines(np.array([angles], dtype=float), np.array([offsets], dtype=float))
+    assert outline.sound().tolist() == [False]
+
+
+def test_moving_moves_every_corner():
+    square = Outlines(SQUARE[None], np.full((1, 4), 0.1))
+    moved = square.moved(np.array([0.3, -0.2]))
+    np.testing.assert_allclose(moved.corners(), square.corners() + [0.3, -0.2], atol=1e-15)
+
+
+def test_joined_keeps_the_order_and_selecting_selects():
+    one, two = (Outlines(SQUARE[None], np.full((1, 4), d)) for d in (0.1, 0.2))
+    both = joined(one, two)
+    assert len(both) == 2
+    assert both[1:].offsets.tolist() == two.offsets.tolist()

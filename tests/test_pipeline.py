@@ -1,0 +1,126 @@
+"""find_shapes as a whole: invariances, edge cases, exact messages, both settings."""
+
+import numpy as np
+import pytest
+
+import primkit as pk
+
+
+def points_of(world, rng=0, **sensor):
+    grid = pk.Grid()
+    grid.add(pk.scan(world, pk.teleport_poses(world), pk.Lidar(**sensor), rng=rng))
+    return grid.points()
+
+
+def same(a, b):
+    return [d.shape for d in a] == [d.shape for d in b]
+
+
+def test_the_order_of_the_points_does_not_matter_to_the_last_bit():
+    points = points_of(pk.random_world(4, rng=3))
+    shuffled = np.random.default_rng(0).permutation(points)
+    assert same(pk.find_shapes(points, rng=0), pk.find_shapes(shuffled, rng=0))
+    few = pk.Settings(method="published", line_trials=200)
+    assert same(
+        pk.find_shapes(points, 4, settings=few, rng=0),
+        pk.find_shapes(shuffled, 4, settings=few, rng=0),
+    )
+
+
+def test_a_shape_does_not_change_when_others_are_added():
+    """Each group is measured with the same seed: what happens elsewhere on the board leaves no trace."""
+    one = pk.World([pk.Circle((-0.2, -0.2), 0.07)])
+    two = pk.World([*one.shapes, pk.Polygon([(0.1, 0.1), (0.3, 0.1), (0.3, 0.25)])])
+    alone, both = (pk.find_shapes(points_of(w), rng=0) for w in (one, two))
+    np.testing.assert_allclose(alone[0].shape.center, both[0].shape.center, atol=1e-9)
+
+
+def test_found_shapes_come_from_left_to_right():
+    found = pk.find_shapes(points_of(pk.random_world(4, rng=11)), rng=0)
+    assert [d.shape.centroid[0] for d in found] == sorted(d.shape.centroid[0] for d in found)
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 4])
+def test_a_given_number_of_shapes_is_used(n):
+    world = pk.random_world(4, kinds=["circle"] * 4, rng=2)
+    assert len(pk.find_shapes(points_of(world), n, rng=0)) <= n
+    assert len(pk.find_shapes(points_of(world), 4, rng=0)) == 4
+
+
+def test_strays_are_left_out():
+    world = pk.random_world(3, rng=5)
+    clean, dirty = points_of(world), points_of(world, spurious=0.03)
+    assert len(dirty) > len(clean) + 100
+    report = pk.evaluate(pk.find_shapes(dirty, rng=0), world)
+    assert report.weighted_accuracy == 1.0, str(report)
+    spread = max(d.rms for d in pk.find_shapes(dirty, rng=0))
+    assert spread < 0.001
+
+
+def test_the_noise_may_be_told():
+    world = pk.random_world(4, rng=6)
+    points = points_of(world, noise_std=0.003)
+    told = pk.find_shapes(points, settings=pk.Settings(noise_std=0.003), rng=0)
+    found = pk.find_shapes(points, rng=0)
+    for detections in (told, found):
+        assert pk.evaluate(detections, world, 0.006).weighted_accuracy > 0.95
+
+
+NOTHING = {
+    "no points": [],
+    "one point": [(0.1, 0.1)],
+    "scattered points": np.random.default_rng(0).uniform(-0.5, 0.5, (40, 2)),
+    "a single straight wall": np.column_stack([np.linspace(0, 0.3, 100), np.full(100, 0.1)]),
+    "all points equal": [(0.1, 0.1)] * 30,
+}
+
+
+@pytest.mark.parametrize("points", NOTHING.values(), ids=NOTHING)
+def test_nothing_there_is_an_empty_list(points):
+    assert pk.find_shapes(points, rng=0) == []
+
+
+def test_no_shape_asked_for_is_an_empty_list():
+    assert pk.find_shapes([(0, 0)], 0) == []
+    assert pk.find_shapes([], 0, settings=pk.PAPER) == []
+
+
+def test_an_empty_grid_has_no_shapes():
+    assert pk.find_shapes(pk.Grid().points()) == []
+
+
+FAILURES = {
+    "NaN": (lambda: pk.find_shapes([(0.0, float("nan"))]), "points must be finite, got (0.0, nan) in row 0"),
+    "infinite": (lambda: pk.find_shapes([(0, 0), (np.inf, 0)]), "points must be finite, got (inf, 0.0) in row 1"),
+    "three columns": (lambda: pk.find_shapes(np.zeros((5, 3))), "points must have shape (N, 2), got shape (5, 3)"),
+    "text": (lambda: pk.find_shapes("abc"), "points must be numbers in an array of shape (N, 2), got 'abc'"),
+    "more shapes than points": (
+        lambda: pk.find_shapes([(0, 0), (1, 1)], 3),
+        "n_shapes must be at most the number of different points, got 3 for 2",
+    ),
+    "shapes from an empty grid": (
+        lambda: pk.find_shapes(pk.Grid().points(), 4),
+        "n_shapes must be at most the number of different points, got 4 for 0",
+    ),
+    "half a shape": (lambda: pk.find_shapes([(0, 0)], 0.5), "n_shapes must be a whole number >= 0, got 0.5"),
+    "a negative number": (lambda: pk.find_shapes([(0, 0)], -1), "n_shapes must be a whole number >= 0, got -1"),
+    "an unknown method": (
+        lambda: pk.Settings(method="magic"),
+        "method must be \"joint\" or \"published\", got 'magic'",
+    ),
+    "negative noise": (lambda: pk.Settings(noise_std=-1), "noise_std must be a finite number >= 0, got -1"),
+    "an unknown name": (lambda: pk.find_shape, "module 'primkit' has no attribute 'find_shape'"),
+}
+
+
+@pytest.mark.parametrize(("call", "message"), FAILURES.values(), ids=FAILURES)
+def test_failure(call, message):
+    with pytest.raises((ValueError, AttributeError)) as error:
+        call()
+    assert str(error.value) == message
+
+
+def test_the_paper_finds_the_number_by_silhouette_when_it_is_not_told():
+    world = pk.World([pk.Circle((-0.25, -0.25), 0.06), pk.Circle((0.25, 0.25), 0.06)])
+    few = pk.Settings(method="published", line_trials=300)
+    assert len(pk.find_shapes(points_of(world), settings=few, rng=0)) == 2

@@ -1,0 +1,65 @@
+"""The second opinion: pieces of one outline are merged, two shapes in one group are split, the rest is left."""
+
+import numpy as np
+import pytest
+
+import primkit as pk
+from primkit.measure import LEAST_SPREAD
+from primkit.regroup import explained, regrouped
+
+RECTANGLE = pk.Polygon([(-0.1, -0.04), (0.1, -0.04), (0.1, 0.04), (-0.1, 0.04)])
+CIRCLE = pk.Circle((0.2, 0.0), 0.05)
+
+
+def groups_of(*parts):
+    return [explained(np.asarray(part), LEAST_SPREAD) for part in parts]
+
+
+def kinds(groups):
+    return sorted(g.shape.kind for g in groups if g.shape is not None)
+
+
+def test_two_walls_of_a_rectangle_become_one_shape():
+    points = RECTANGLE.outline(400)
+    left, right = points[points[:, 0] < -0.02], points[points[:, 0] > 0.02]
+    assert kinds(regrouped(groups_of(left, right), LEAST_SPREAD)) == ["rectangle"]
+
+
+def test_three_arcs_become_one_circle():
+    ring = CIRCLE.outline(120)
+    assert kinds(regrouped(groups_of(ring[:30], ring[40:70], ring[80:110]), LEAST_SPREAD)) == ["circle"]
+
+
+def test_neighbours_that_are_two_shapes_stay_two():
+    both = regrouped(groups_of(RECTANGLE.outline(300), CIRCLE.outline(150)), LEAST_SPREAD)
+    assert kinds(both) == ["circle", "rectangle"]
+
+
+def test_half_seen_neighbours_stay_two():
+    seen = RECTANGLE.outline(300)
+    seen = seen[seen[:, 1] < 0.03]
+    arc = CIRCLE.outline(150)
+    assert len(regrouped(groups_of(seen, arc[arc[:, 1] < 0.02]), LEAST_SPREAD)) == 2
+
+
+def test_two_shapes_in_one_group_are_split():
+    together = np.vstack([RECTANGLE.outline(300), CIRCLE.outline(150)])
+    assert kinds(regrouped(groups_of(together), LEAST_SPREAD)) == ["circle", "rectangle"]
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_a_known_number_is_kept_to(n):
+    groups = groups_of(RECTANGLE.outline(300), CIRCLE.outline(150))
+    assert len(regrouped(groups, LEAST_SPREAD, n)) == n
+
+
+def test_nothing_stays_nothing():
+    assert regrouped([], LEAST_SPREAD) == []
+    assert regrouped([], LEAST_SPREAD, 3) == []
+
+
+def test_no_point_is_lost():
+    points = RECTANGLE.outline(400)
+    parts = groups_of(points[:150], points[170:390], CIRCLE.outline(90))
+    after = regrouped(parts, LEAST_SPREAD)
+    assert sum(len(g.points) for g in after) == sum(len(g.points) for g in parts)
