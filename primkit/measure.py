@@ -1,17 +1,14 @@
 """Measure: from the points of one cluster to a shape with its corners, its centre and its dimensions.
 
-Circle or polygon, and how many sides? Each candidate is fitted as well as it can be, and the one that explains
-the points best for its number of parameters is taken.
+The best of the candidate explanations is taken; a bare wall is no shape.
 
 In:  points of one cluster, shape (N, 2), metres.
 Out: ``Detection``: the shape, its points, how closely they lie to it, and how clear the choice was; or ``None``.
 
+>>> from primkit.shapes import Circle
 >>> found = measure_shape(Circle((0.1, 0.2), 0.05).outline(60), spread=0.0005, rng=0)
 >>> found.shape, found.margin > 100
 (Circle(center=(0.1, 0.2), radius=0.05), True)
-
-Source: the criterion is the evidence, MacKay (1992), "Bayesian interpolation". Where the points narrow each number
-down no farther than to the noise of one of them, it is BIC, Schwarz (1978), "Estimating the dimension of a model".
 """
 
 from __future__ import annotations
@@ -22,36 +19,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arguments import as_points, as_positive
-from .circles import find_circle, fit_circle
-from .guess import guess_outlines, guess_rectangles, line_guesses
-from .lines import find_lines
-from .outlines import Outlines
-from .refine import GHOST_AREA, GHOSTS, OUTLINE_LENGTH, refine_hard, refine_soft, shares, truncated_cost
-from .shapes import KINDS, Circle, Kind, Polygon, Shape
+from .explain import SIGMAS, Candidate, candidates, seen_shares
+from .shapes import Kind, Shape
 
 Floats = NDArray[np.float64]
 
-SIGMAS = 3.0  # a point within three standard deviations may belong to a shape
 # A cell's centre lies evenly within half a cell of the point itself: a standard deviation of 1 mm / sqrt(12), and
 # a third more because neighbours along a side err together. No sensor brings the spread [m] below this.
 LEAST_SPREAD = 1.33 * 0.001 / 12**0.5
 NEIGHBOURS = 10  # enough for a line with its spread, few enough for a curve to be straight
-LEAST_POINTS = 8  # fewer fix nothing: a pentagon alone has ten numbers
-MOST_RADIUS = 0.25  # m: a larger circle than a quarter of the board is a wall
-LEAST_ARC = np.radians(60)  # a shorter arc fits a wide range of circles
-GAP = 0.012  # m: a stretch of outline within this of a point counts as seen
-
-CIRCLE_TRIALS = 100  # with four fifths of the points on the circle, one sample in two is clean
-CIRCLE_ROUNDS = 4
-WALL_TRIALS = 100
-# What is supposed before the points are looked at. Each number of a shape is known to about a centimetre. An outline
-# is seen nearly all around: each metre that was not seen is as unlikely as one in e^40. And four sides without right
-# angles are none of the board's shapes: one in e^10.
-PRIOR_WIDTH = 0.01
-UNSEEN_COST = 80.0
-CROOKED_COST = 20.0
-# A candidate that is this much worse (in cost) before the last polish is not going to win by it.
-CONTENDER = 100.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,37 +59,6 @@ class Detection:
     def kind(self) -> Kind:
         """The shape's kind."""
         return self.shape.kind
-
-
-@dataclass(frozen=True, eq=False)
-class Candidate:
-    """One explanation of a cluster.
-
-    Parameters
-    ----------
-    figure : Circle, Outlines (one row) or None
-        What the points would lie on; None for a bare wall.
-    square : bool
-        Whether an outline of four sides keeps right angles.
-    cost : float
-        -2 times the logarithm of the evidence; smaller is better. See ``_cost``.
-    """
-
-    figure: Circle | Outlines | None
-    square: bool
-    cost: float
-
-    @property
-    def shape(self) -> Shape | None:
-        """The figure as a shape; None for a bare wall."""
-        return self.figure.polygon() if isinstance(self.figure, Outlines) else self.figure
-
-    @property
-    def kind(self) -> str:
-        """The shape's kind, or ``"wall"``."""
-        if isinstance(self.figure, Outlines):
-            return KINDS[self.figure.angles.shape[1] - 2]
-        return "wall" if self.figure is None else "circle"
 
 
 def measure_shape(
@@ -194,157 +139,3 @@ def detection(shape: Shape, points: Floats, reach: float, margin: float = float(
     on_it = np.abs(distance) <= reach
     rms = float(np.sqrt(np.mean(distance[on_it] ** 2))) if on_it.any() else float("nan")
     return Detection(shape, points[on_it], rms, margin, seen_shares(shape, points[on_it]))
-
-
-def seen_shares(shape: Shape, points: Floats, gap: float = GAP) -> tuple[float, ...]:
-    """Return the share of each side, or of the whole circle, that lies within ``gap`` metres of a point.
-
-    Examples
-    --------
-    >>> from primkit.shapes import Polygon
-    >>> square = Polygon([(0, 0), (0.1, 0), (0.1, 0.1), (0, 0.1)])
-    >>> [round(share, 1) for share in seen_shares(square, np.array([(0.0, 0.05), (0.05, 0.0)]))]
-    [0.3, 0.0, 0.0, 0.3]
-    """
-    from scipy.spatial import cKDTree
-
-    if isinstance(shape, Circle):
-        stretches = [shape.outline(120)]
-    else:
-        steps = (np.arange(30) + 0.5)[:, None] / 30
-        stretches = [corner + steps * edge for corner, edge in zip(shape.vertices, shape.edges, strict=True)]
-    if len(points) == 0:
-        return (0.0,) * len(stretches)
-    nearest, _ = cKDTree(points).query(np.vstack(stretches))
-    return tuple((nearest.reshape(len(stretches), -1) <= gap).mean(axis=1).tolist())
-
-
-def candidates(points: Floats, spread: float, *, rng: int | np.random.Generator | None = None) -> list[Candidate]:
-    """Return every explanation of a cluster's points, the best first.
-
-    Parameters
-    ----------
-    points : array, shape (N, 2)
-        Metres.
-    spread : float
-        Standard deviation of the points from the outline, metres.
-    rng : int or numpy.random.Generator, optional
-        Seed or generator.
-
-    Returns
-    -------
-    list of Candidate
-        A wall, a circle, and polygons of three to five sides, as far as each can be fitted. Those that come
-        near the best are fitted to the last digit.
-    """
-    if len(np.unique(points, axis=0)) < LEAST_POINTS:
-        return []
-    middle = points.mean(axis=0)
-    local = points - middle  # digits are not lost far from the origin
-    rough = sorted(_rough(local, spread, np.random.default_rng(rng)), key=lambda c: c.cost)
-    ranked = [_polished(local, c, spread) if c.cost <= rough[0].cost + CONTENDER else c for c in rough]
-    return [_moved(c, middle) for c in sorted(ranked, key=lambda c: c.cost)]
-
-
-def _rough(points: Floats, spread: float, rng: np.random.Generator) -> list[Candidate]:
-    """Return the explanations that RANSAC and a few rounds of giving points back lead to, in any order."""
-    circle_rng, line_rng, wall_rng = rng.spawn(3)
-    reach = SIGMAS * spread
-    found = [_wall(points, spread, wall_rng)]
-    circle = find_circle(points, reach, trials=CIRCLE_TRIALS, rng=circle_rng)
-    if circle is not None and circle.radius <= MOST_RADIUS:
-        found.append(_judged(points, circle, False, spread))
-    sides = line_guesses(points, reach, rng=line_rng)
-    for k in (3, 4, 5):
-        guess = guess_outlines(points, sides, k, reach)
-        starts = [(guess, False)]
-        if k == 4:
-            starts.append((guess_rectangles(points, sides, guess), True))
-        for start, square in starts:
-            refined = refine_hard(points, start, reach, square=square)
-            refined = refined[refined.sound()]
-            if len(refined):
-                best = int(np.argmin(truncated_cost(points, refined, reach)))
-                found.append(_judged(points, refined[best : best + 1], square, spread))
-    return found
-
-
-def _wall(points: Floats, spread: float, rng: np.random.Generator) -> Candidate:
-    """Explain the points by one straight wall: its line and its two ends; its back is not seen."""
-    best = find_lines(points, SIGMAS * spread, most=1, trials=WALL_TRIALS, rng=rng)[0]
-    length = float(np.ptp(points[best.inliers] @ best.line.direction))
-    fit = _log_likelihood(best.line.signed_distance(points), spread)
-    return Candidate(None, False, _cost(fit, 4, length, len(points), spread))
-
-
-def _polished(points: Floats, rough: Candidate, spread: float) -> Candidate:
-    """Fit a candidate to the last digit: each point counts for it as far as it is likely to come from it."""
-    figure = rough.figure
-    if isinstance(figure, Circle):
-        figure = _polished_circle(points, figure, spread)
-        if figure is None or 2 * np.pi * seen_shares(figure, points)[0] < LEAST_ARC:
-            return Candidate(None, False, float("inf"))
-    elif isinstance(figure, Outlines):
-        settled = refine_soft(points, figure, spread, square=rough.square)
-        figure = settled if settled.sound()[0] else figure
-    return rough if figure is None else _judged(points, figure, rough.square, spread)
-
-
-def _polished_circle(points: Floats, circle: Circle, spread: float) -> Circle | None:
-    """Return the geometric fit in which points from nowhere do not count; None when it grows beyond a board."""
-    for _ in range(CIRCLE_ROUNDS):
-        density = _density(circle.signed_distance(points), spread)
-        fitted = fit_circle(points, weights=density / (density + GHOSTS / GHOST_AREA))
-        if fitted is None or fitted.radius > MOST_RADIUS:
-            return None
-        circle = fitted
-    return circle
-
-
-def _judged(points: Floats, figure: Circle | Outlines, square: bool, spread: float) -> Candidate:
-    """Return a figure with its cost."""
-    if isinstance(figure, Circle):
-        fit, n_params = _log_likelihood(figure.signed_distance(points), spread), 3
-    else:
-        fit, n_params = float(shares(points, figure, spread)[1][0]), 5 if square else 2 * figure.angles.shape[1]
-    shape = figure.polygon() if isinstance(figure, Outlines) else figure
-    unseen = _unseen_length(shape, points[np.abs(shape.signed_distance(points)) <= SIGMAS * spread])
-    cost = _cost(fit, n_params, unseen, len(points), spread)
-    return Candidate(figure, square, cost + (CROOKED_COST if n_params == 8 else 0.0))
-
-
-def _cost(log_likelihood: float, n_params: int, unseen: float, n_points: int, spread: float) -> float:
-    """Return -2 times the logarithm of the evidence (Laplace's approximation; MacKay, 1992).
-
-    Each number that is fitted costs the logarithm of how far the points narrow it down, from ``PRIOR_WIDTH``
-    before to ``spread / sqrt(N)`` after; and each metre of outline that was not seen has its price.
-    """
-    narrowed = n_points / (2 * np.pi) * (1 + (PRIOR_WIDTH / spread) ** 2)
-    return float(-2 * log_likelihood + n_params * np.log(narrowed) + UNSEEN_COST * unseen)
-
-
-def _log_likelihood(distance: Floats, spread: float) -> float:
-    """Return how likely the points are at these distances from a smooth outline, as in ``refine.shares``."""
-    return float(np.log(_density(distance, spread) + GHOSTS / GHOST_AREA).sum())
-
-
-def _density(distance: Floats, spread: float) -> Floats:
-    """Return the density of points that come from an outline, shape (N,), per square metre."""
-    across = np.exp(-0.5 * (distance / spread) ** 2) / (np.sqrt(2 * np.pi) * spread)
-    return (1 - GHOSTS) * across / OUTLINE_LENGTH
-
-
-def _unseen_length(shape: Shape, points: Floats) -> float:
-    """Return how much of the outline has no point near it, metres."""
-    lengths = shape.sides if isinstance(shape, Polygon) else np.array([shape.perimeter])
-    return float(lengths @ (1 - np.array(seen_shares(shape, points))))
-
-
-def _moved(candidate: Candidate, offset: Floats) -> Candidate:
-    """Return the candidate, shifted back to where its points are."""
-    figure = candidate.figure
-    if isinstance(figure, Circle):
-        figure = figure.moved(offset)
-    elif isinstance(figure, Outlines):
-        figure = figure.moved(offset)
-    return Candidate(figure, candidate.square, candidate.cost)

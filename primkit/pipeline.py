@@ -22,9 +22,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import as_points, as_positive
+from .arguments import as_count, as_points, as_positive
+from .explain import SIGMAS
 from .lines import find_lines
-from .measure import LEAST_SPREAD, SIGMAS, Detection, as_detection, detection, spread_of
+from .measure import LEAST_SPREAD, Detection, as_detection, detection, spread_of
 from .paper import measure_as_published
 from .regroup import Group, explained, regrouped
 from .segmentation import check_count, segment
@@ -69,6 +70,11 @@ class Settings:
             raise ValueError(f'method must be "joint" or "published", got {self.method!r}')
         if self.noise_std is not None:
             as_positive(self.noise_std, "noise_std", zero=True)
+        as_positive(self.line_threshold, "line_threshold", zero=True)
+        as_count(self.line_trials, "line_trials")
+        if not 0 <= self.left_over <= 1:
+            raise ValueError(f"left_over must be between 0 and 1, got {self.left_over:g}")
+        as_count(self.circle_trials, "circle_trials")
 
 
 ROBUST = Settings()

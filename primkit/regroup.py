@@ -26,7 +26,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from .measure import SIGMAS, Candidate, candidates, seen_shares
+from .explain import SIGMAS, Candidate, candidates, seen_shares
 from .refine import GHOST_AREA, GHOSTS
 from .segmentation import LEAST_GROUP, kmeans
 from .shapes import Polygon, Shape

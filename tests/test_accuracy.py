@@ -51,9 +51,7 @@ def test_robust_on_the_suite_with_noise():
 
 @pytest.mark.parametrize(("gap", "spurious", "least"), [(0.05, 0.0, 0.97), (0.05, 0.02, 0.97), (0.03, 0.0, 0.97)])
 def test_robust_on_free_maps(gap, spurious, least):
-    worlds = [
-        pk.random_world(1 + number % 6, style="free", gap=gap, rng=[2026, number]) for number in range(40)
-    ]
+    worlds = [pk.random_world(1 + number % 6, style="free", gap=gap, rng=[2026, number]) for number in range(40)]
     ours, oracles = compare(worlds, spurious=spurious)
     assert shown(f"free maps, gaps {gap} m, spurious {spurious:.0%}", ours, oracles) >= least
     assert np.mean([r.count_right for r in ours]) >= 0.975

@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import primkit as pk
-from primkit.measure import LEAST_SPREAD, candidates, measure_shape, seen_shares, spread_of
+from primkit.explain import candidates, seen_shares
+from primkit.measure import LEAST_SPREAD, measure_shape, spread_of
 
 KINDS = ("circle", "triangle", "rectangle", "pentagon")
 

@@ -106,7 +106,7 @@ FAILURES = {
     "a negative number": (lambda: pk.find_shapes([(0, 0)], -1), "n_shapes must be a whole number >= 0, got -1"),
     "an unknown method": (
         lambda: pk.Settings(method="magic"),
-        "method must be \"joint\" or \"published\", got 'magic'",
+        'method must be "joint" or "published", got \'magic\'',
     ),
     "negative noise": (lambda: pk.Settings(noise_std=-1), "noise_std must be a finite number >= 0, got -1"),
     "an unknown name": (lambda: pk.find_shape, "module 'primkit' has no attribute 'find_shape'"),

@@ -10,7 +10,6 @@ from primkit.outlines import Outlines
 from primkit.refine import refine_hard, refine_soft, refit, shares, truncated_cost
 from tests.test_outlines import outline_of
 
-
 TENTH_OF_A_CELL = 1e-4  # m: shares blur a corner a little even where the points are exact
 
 
@@ -116,7 +115,8 @@ def test_shares_are_shares_and_likelihood_falls_with_distance():
     assert share[0, 1, 0] == pytest.approx(share[0, 1, 1])  # on a corner: half and half
     assert share[0, 2].sum() < 1e-6  # in the middle: from nowhere
     assert share[0, 3, 0] < 1.0
-    assert shares(points[:1] + [0.002, 0], square, 0.001)[1] < shares(points[:1], square, 0.001)[1]
+    farther_out = np.array([(0.102, 0.0)])
+    assert shares(farther_out, square, 0.001)[1] < shares(points[:1], square, 0.001)[1]
     assert np.isfinite(near).all()
 
 
