@@ -13,12 +13,13 @@ Out: ``Detection``: the shape, its points, how closely they lie to it, and how c
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arguments import as_points, as_positive
+from .certainty import certainty
 from .explain import SIGMAS, Candidate, candidates, seen_shares
 from .shapes import Kind, Shape
 
@@ -47,6 +48,11 @@ class Detection:
         of the Bayes factor; above 10 is very strong (Kass and Raftery, 1995). Infinite without a rival.
     seen : tuple of float
         The share of each side (or of the whole circle) that has points near it, 0 to 1.
+    center_std : tuple of float
+        Standard deviations of the centroid's x and y, metres; infinite when part of the shape was not seen.
+    dimension_std : tuple of float
+        Standard deviation of each of ``shape.dimensions``, metres; infinite for one that was not measured,
+        because a side that it hangs on was never seen. Empty from ``PAPER``, which does not ask.
     """
 
     shape: Shape
@@ -54,11 +60,18 @@ class Detection:
     rms: float
     margin: float = float("inf")
     seen: tuple[float, ...] = ()
+    center_std: tuple[float, ...] = ()
+    dimension_std: tuple[float, ...] = ()
 
     @property
     def kind(self) -> Kind:
         """The shape's kind."""
         return self.shape.kind
+
+    @property
+    def measured(self) -> tuple[bool, ...]:
+        """Which of the shape's dimensions were measured, and not only supposed."""
+        return tuple(std < float("inf") for std in self.dimension_std)
 
 
 def measure_shape(
@@ -98,11 +111,14 @@ def measure_shape(
 
 def as_detection(points: Floats, ranked: list[Candidate], spread: float) -> Detection | None:
     """Return the best candidate with those of the points that lie on it; None when it is no shape."""
-    shape = ranked[0].shape if ranked else None
-    if shape is None:
+    best = ranked[0] if ranked else None
+    if best is None or best.figure is None or best.shape is None:
         return None
-    rival = next((other.cost for other in ranked if other.kind != shape.kind), float("inf"))
-    return detection(shape, points, SIGMAS * spread, margin=rival - ranked[0].cost)
+    rival = next((other.cost for other in ranked if other.kind != best.kind), float("inf"))
+    found = detection(best.shape, points, SIGMAS * spread)
+    middle = found.points.mean(axis=0)
+    sure = certainty(best.figure.moved(-middle), found.points - middle, spread, square=best.square)
+    return replace(found, margin=rival - best.cost, center_std=sure.center_std, dimension_std=sure.dimension_std)
 
 
 def spread_of(points: ArrayLike) -> float:
@@ -133,9 +149,9 @@ def spread_of(points: ArrayLike) -> float:
     return max(LEAST_SPREAD, float(np.sqrt(np.median(variance))))
 
 
-def detection(shape: Shape, points: Floats, reach: float, margin: float = float("inf")) -> Detection:
+def detection(shape: Shape, points: Floats, reach: float) -> Detection:
     """Return the shape with those of the points that lie within ``reach`` metres of its outline."""
     distance = shape.signed_distance(points)
     on_it = np.abs(distance) <= reach
     rms = float(np.sqrt(np.mean(distance[on_it] ** 2))) if on_it.any() else float("nan")
-    return Detection(shape, points[on_it], rms, margin, seen_shares(shape, points[on_it]))
+    return Detection(shape, points[on_it], rms, seen=seen_shares(shape, points[on_it]))

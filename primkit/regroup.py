@@ -35,6 +35,7 @@ Floats = NDArray[np.float64]
 
 CLOSED = 0.9  # an outline seen on nine tenths of its length is no piece of another
 WELL_EXPLAINED = 0.9  # share of a group's points on its shape; with fewer, the group may be two
+MOST_ACROSS = 0.45  # m: the diagonal of the paper's largest rectangle; pieces farther apart are of two shapes
 INSIDE_HULL = 0.05  # share of points that may lie inside a hull which should be an outline
 
 
@@ -152,6 +153,8 @@ def _may_be_one(a: Group, b: Group, spread: float) -> bool:
     if _is_closed(a) and _is_closed(b):
         return False
     points = np.vstack([a.points, b.points])
+    if np.ptp(points, axis=0).max() > MOST_ACROSS:
+        return False
     hull = shapely.MultiPoint(points).convex_hull
     depth = shapely.distance(hull.boundary, shapely.points(points))
     # The hull runs along the outermost points: the others lie up to six spreads farther in.

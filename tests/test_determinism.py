@@ -17,7 +17,7 @@ def bits(value):
     if isinstance(value, pk.Scans):
         return value.ranges.tobytes() + value.poses.tobytes()
     if isinstance(value, pk.Detection):
-        return bits(value.shape) + value.points.tobytes() + np.float64([value.rms, value.margin, *value.seen]).tobytes()
+        return bits(value.shape) + value.points.tobytes() + np.float64([value.rms, value.margin, *value.seen, *value.center_std, *value.dimension_std]).tobytes()
     if isinstance(value, pk.Circle):
         return value.center.tobytes() + np.float64(value.radius).tobytes()
     if isinstance(value, pk.Polygon):

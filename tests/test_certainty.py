@@ -1,0 +1,85 @@
+"""Standard deviations: right on average over many draws, and infinite for what was never seen."""
+
+import numpy as np
+import pytest
+
+import primkit as pk
+from primkit.certainty import CELL_STD, certainty, sides_seen
+from primkit.measure import measure_shape
+from tests.test_outlines import outline_of
+
+TRIANGLE = pk.Polygon([(-0.08, -0.05), (0.08, -0.05), (0.0, 0.09)])
+RECTANGLE = pk.Polygon([(-0.1, -0.04), (0.1, -0.04), (0.1, 0.04), (-0.1, 0.04)]).moved(angle=0.4)
+ANGLES = np.radians([80, 152, 224, 296, 368])
+PENTAGON = pk.Polygon(0.08 * np.column_stack([np.cos(ANGLES), np.sin(ANGLES)]))
+SHAPES = {"circle": pk.Circle((0.1, 0.2), 0.07), "triangle": TRIANGLE, "rectangle": RECTANGLE, "pentagon": PENTAGON}
+
+
+@pytest.mark.parametrize("kind", SHAPES)
+@pytest.mark.parametrize("noise", [0.001, 0.003])
+def test_the_stated_deviation_is_the_real_one(kind, noise):
+    """Over 60 draws of the noise, errors divided by their stated deviation have a deviation of one."""
+    true, errors = SHAPES[kind], []
+    for draw in range(60):
+        rng = np.random.default_rng([draw, 7])
+        points = true.outline(220) + rng.normal(0, noise, (220, 2))
+        found = measure_shape(points, noise, rng=0)
+        if found.kind != kind:
+            continue
+        match = pk.evaluate([found], pk.World([true])).matches[0]
+        center = match.center_error / found.center_std
+        dimensions = np.array(found.shape.dimensions) if kind in ("circle", "rectangle") else None
+        errors.append(center)
+        if dimensions is not None:
+            errors.append((dimensions - true.dimensions) / found.dimension_std)
+    z = np.concatenate(errors)
+    assert 0.85 < z.std() < 1.2
+    assert 0.91 <= np.mean(np.abs(z) < 1.96) <= 0.99
+
+
+def test_a_circles_deviation_has_a_closed_form():
+    """All around, radius: std / sqrt(N); centre: std sqrt(2 / N)."""
+    circle, rng = pk.Circle((0, 0), 0.1), np.random.default_rng(0)
+    points = circle.outline(1000) * (1 + rng.normal(0, 0.002, 1000) / 0.1)[:, None]
+    sure = certainty(circle, points, 0.002)
+    assert sure.dimension_std[0] == pytest.approx(0.002 / np.sqrt(1000), rel=0.1)
+    assert sure.center_std == pytest.approx([0.002 * np.sqrt(2 / 1000)] * 2, rel=0.1)
+
+
+def test_a_side_along_the_cells_stays_unsure_however_many_points_there_are():
+    """A wall at x = 0.1234 m falls into the same cells from end to end: the cell's deviation remains."""
+    upright = pk.Polygon([(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (-0.1, 0.05)])
+    for polygon, least, most in ((upright, 0.8, 1.6), (upright.moved(angle=0.5), 0.0, 0.35)):
+        sure = certainty(outline_of(polygon), polygon.outline(2000), 0.0004, square=True)
+        assert least * CELL_STD <= min(sure.dimension_std)
+        assert max(sure.dimension_std) <= most * CELL_STD
+
+
+def test_dimensions_that_hang_on_an_unseen_side_are_not_measured():
+    points = RECTANGLE.outline(400)
+    side = RECTANGLE.vertices[:2]
+    along = (side[1] - side[0]) / np.linalg.norm(side[1] - side[0])
+    away = np.abs((points - side[0]) @ [-along[1], along[0]]) > 0.003
+    found = measure_shape(points[away], 0.0, rng=0)
+    assert found.kind == "rectangle"
+    assert found.measured == (True, False)  # the unseen side is a long one: the width is seen, the height is not
+    assert found.center_std == (float("inf"),) * 2
+
+
+def test_every_dimension_is_measured_when_all_was_seen():
+    for shape in SHAPES.values():
+        assert all(measure_shape(shape.outline(250), 0.0, rng=0).measured)
+
+
+def test_a_line_over_a_hidden_side_is_not_seen():
+    """It touches the last points of both neighbours, which lie near its corners."""
+    outline, points = outline_of(PENTAGON), PENTAGON.outline(300)
+    hidden = np.abs(outline.distances(points)[0, :, 2]) < 0.0015
+    kept = points[~hidden]
+    assert sides_seen(outline, points, 0.0004).all()
+    assert sides_seen(outline, kept, 0.0004).tolist() == [True, True, False, True, True]
+
+
+def test_the_published_method_states_no_deviation():
+    found = pk.find_shapes(TRIANGLE.outline(200), 1, settings=pk.Settings(method="published", line_trials=200), rng=0)
+    assert all(d.dimension_std == () for d in found)
