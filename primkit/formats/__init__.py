@@ -1,0 +1,46 @@
+"""Formats: maps, results and scans, to files and back.
+
+Beside the story: every noun can be put on the shelf between two steps, and what is read back is equal to
+the last bit.
+
+In:  a ``World`` (a map, or what was found, with properties for each shape) or ``Scans``, and a file's name.
+Out: GeoJSON (``.geojson``, ``.json``) for worlds, compressed NumPy arrays (``.npz``) for scans.
+
+>>> import tempfile
+>>> from primkit.world import random_world
+>>> world = random_world(4, rng=7)
+>>> with tempfile.TemporaryDirectory() as folder:
+...     save_world(world, f"{folder}/map.geojson")
+...     load_world(f"{folder}/map.geojson") == world
+True
+
+A file is written whole or not at all, and a file that is not what it says is refused in one sentence that
+begins with its name. The rooms, each of which imports only those before it:
+
+=============  ==============================================================
+``files.py``   whole or not at all; endings, limits, and sentences with names
+``maps.py``    worlds as GeoJSON
+``suite.py``   the paper's 34 maps
+``scans.py``   scans as NumPy arrays
+=============  ==============================================================
+"""
+
+from .files import StrPath, write_atomically
+from .maps import MAP_ENDINGS, MAP_LIMIT, load_world, save_world
+from .scans import SCAN_ENDINGS, SCANS_LIMIT, load_scans, save_scans
+from .suite import make_paper_suite, paper_suite
+
+__all__ = [
+    "load_world",
+    "save_world",
+    "paper_suite",
+    "make_paper_suite",
+    "load_scans",
+    "save_scans",
+    "write_atomically",
+    "StrPath",
+    "MAP_ENDINGS",
+    "MAP_LIMIT",
+    "SCAN_ENDINGS",
+    "SCANS_LIMIT",
+]
