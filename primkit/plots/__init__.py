@@ -1,0 +1,47 @@
+"""Plots: every picture of the kit.
+
+Beside the story: each step's output can be looked at, the truth and the finding in the same colours.
+
+In:  what the steps hand on: a ``World``, ``Scans``, points, labels, what was found, a ``Report``.
+Out: the matplotlib ``Axes`` that was drawn on; ``plot_story`` gives a whole ``Figure``.
+
+>>> from primkit.shapes import Circle
+>>> from primkit.world import World
+>>> ax = plot_world(World([Circle((0, 0), 0.1)]))
+>>> ax.get_title(loc="left"), ax.get_xlabel()
+('1 shape: 1 circle', 'x [m]')
+
+Every plot takes ``ax``, the axes to draw on, and returns it. Without one it makes a figure of its own with pyplot:
+a notebook shows that by itself, a script calls ``matplotlib.pyplot.show()``. No plot changes matplotlib's settings.
+For several pictures in one figure, ``plt.subplots(1, 2, layout="constrained")`` keeps titles and labels apart.
+
+The rooms, each of which imports only those before it:
+
+===============  ==================================================
+``look.py``      colours and signs, the board, titles, legends
+``labels.py``    where each label finds room
+``pictures.py``  the board, a scan, the points, the clusters
+``found.py``     the shapes that were found, over the truth
+``story.py``     all of them in one figure, and the file it goes to
+===============  ==================================================
+
+Sources: the pictures are the paper's Figures 1 to 3; the colours are Okabe and Ito's (2008), "Color Universal Design",
+which colour-blind readers can tell apart.
+"""
+
+from .found import plot_found
+from .look import KIND_COLORS, KIND_MARKERS
+from .pictures import plot_clusters, plot_points, plot_scan, plot_world
+from .story import plot_story, save_figure
+
+__all__ = [
+    "plot_world",
+    "plot_scan",
+    "plot_points",
+    "plot_clusters",
+    "plot_found",
+    "plot_story",
+    "save_figure",
+    "KIND_COLORS",
+    "KIND_MARKERS",
+]

@@ -1,0 +1,196 @@
+"""Look: the colours and signs, the board, and what all pictures share.
+
+In:  the axes, and what is to be drawn on them.
+Out: artists on these axes; sizes of letters that suit their width.
+
+>>> KIND_COLORS["circle"], KIND_MARKERS["circle"]
+('#0072B2', 'o')
+"""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex, to_rgb, to_rgba
+from matplotlib.legend import Legend
+from matplotlib.patches import Circle as CirclePatch
+from matplotlib.patches import Patch, Rectangle
+from matplotlib.patches import Polygon as PolygonPatch
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+
+from ..shapes import Circle, Kind, Shape
+
+Floats = NDArray[np.float64]
+
+# Okabe and Ito's colours; their yellow is too faint on white. The first four have a contrast of 3 and more to white.
+BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
+ORANGE, SKY, BLACK = "#E69F00", "#56B4E9", "#000000"
+INK, GREY, PALE = "#222222", "#6E6E6E", "#C8C8C8"
+
+KIND_COLORS: dict[Kind, str] = {"circle": BLUE, "triangle": VERMILION, "rectangle": GREEN, "pentagon": PURPLE}
+# The same, darker: letters need a contrast of 4.5 and more.
+KIND_INKS: dict[Kind, str] = {
+    kind: to_hex((0.7 * red, 0.7 * green, 0.7 * blue))
+    for kind, (red, green, blue) in ((kind, to_rgb(color)) for kind, color in KIND_COLORS.items())
+}
+KIND_MARKERS: dict[Kind, str] = {"circle": "o", "triangle": "^", "rectangle": "s", "pentagon": "p"}
+# A cluster's kind is not known yet: the colours that no kind has come first, and no marker is a kind's. Seven colours
+# with six markers: the pairs repeat after 42 clusters.
+CLUSTER_COLORS = (ORANGE, SKY, BLACK, PURPLE, VERMILION, BLUE, GREEN)
+CLUSTER_MARKERS = ("D", "v", "P", "X", "<", "*")
+
+MARGIN = 0.03  # of the board's size, left free around it
+BAND = 0.06  # of the board's size, left free above it for a legend
+FULL_WIDTH = 3.5  # inches: in narrower axes all letters are smaller
+LEAST_LETTERS = 5.0  # points
+LEAST_COLUMNS = 10  # letters: a title is not broken into shorter lines
+LEGEND_WIDTH = 2.6  # inches: narrower axes have no room for a legend
+
+FIGURE_SIZE = (5.2, 5.2)  # inches: small, so that letters can still be read at 390 pixels, a phone's width
+
+
+def check_type(name: str, value: object, kind: type, *, or_none: bool = False) -> None:
+    """Refuse a value of another type.
+
+    >>> check_type("ax", [], Axes)
+    Traceback (most recent call last):
+        ...
+    ValueError: ax must be of type Axes, got list
+    """
+    if not isinstance(value, kind) and not (or_none and value is None):
+        raise ValueError(f"{name} must be of type {kind.__name__}, got {type(value).__name__}")
+
+
+def as_axes(ax: Axes | None) -> Axes:
+    """Return the axes, or those of a new pyplot figure."""
+    check_type("ax", ax, Axes, or_none=True)
+    if ax is not None:
+        return ax
+    import matplotlib.pyplot as plt  # not at the top: pyplot keeps a list of figures, and only this needs it
+
+    return plt.subplots(figsize=FIGURE_SIZE, layout="constrained")[1]
+
+
+def draw_board(ax: Axes, size: float, points: Floats | None = None, *, legend: bool = False) -> Floats:
+    """Draw the board's edge; set limits that hold it, the points, and a band above for a legend.
+
+    Returns the lower left and the upper right corner of what holds the board and the points, shape (2, 2), metres.
+    """
+    half = size / 2
+    ax.add_patch(Rectangle((-half, -half), size, size, facecolor="white", edgecolor=INK, linewidth=1, zorder=0.5))
+    inside = np.vstack([[(-half, -half), (half, half)], np.empty((0, 2)) if points is None else points])
+    room = np.array([inside.min(axis=0), inside.max(axis=0)])
+    (left, low), (right, high) = room + np.array([[-MARGIN], [MARGIN]]) * size
+    ax.set(xlim=(left, right), ylim=(low, high + legend * BAND * (right - left)), aspect="equal")
+    for axis, name in ((ax.xaxis, "x [m]"), (ax.yaxis, "y [m]")):
+        axis.set_label_text(name, fontsize=letters(ax, 10))
+        axis.set_major_locator(MaxNLocator(5))
+    ax.spines[:].set_visible(False)
+    ax.tick_params(color=GREY, labelsize=letters(ax, 9))
+    return room
+
+
+def width_of(ax: Axes) -> float:
+    """Return the width of the axes in inches."""
+    assert ax.figure is not None  # axes that were removed cannot be drawn on
+    ax.apply_aspect()
+    return ax.get_window_extent().width / ax.figure.dpi
+
+
+def marks(ax: Axes, size: float) -> float:
+    """Return the size of markers and lines in points: ``size`` where there is room, less in narrow axes."""
+    return size * min(1.0, width_of(ax) / FULL_WIDTH)
+
+
+def letters(ax: Axes, size: float) -> float:
+    """Return the size of letters in points, as ``marks``, but never too small to be read."""
+    return max(marks(ax, size), LEAST_LETTERS)
+
+
+def set_title(ax: Axes, text: str) -> None:
+    """Set the title, on as many lines as the width of the axes asks for."""
+    title = ax.set_title("", loc="left", size=max(letters(ax, 11), 8), weight="bold")
+    together = re.sub(r"(\d) (mm|m)\b", "\\1\u00a0\\2", text)  # a number and its unit stay on one line
+    for columns in range(max(len(text), LEAST_COLUMNS), LEAST_COLUMNS - 1, -1):
+        title.set_text(textwrap.fill(together, columns).replace("\u00a0", " "))
+        if title.get_window_extent().width <= ax.get_window_extent().width:
+            break
+
+
+class _AtEachSize(Artist):
+    """Draws nothing: acts before the axes' other artists are drawn, when the width of the axes has changed."""
+
+    def __init__(self, act: Callable[[], None]) -> None:
+        super().__init__()
+        self.act, self.width = act, -1.0
+        self.set(zorder=-100, in_layout=False)
+
+    def draw(self, renderer: object) -> None:
+        assert isinstance(self.axes, Axes)
+        width = round(width_of(self.axes), 3)
+        if width != self.width:
+            self.act()
+        self.width = width
+
+
+def at_each_size(ax: Axes, act: Callable[[], None]) -> None:
+    """Act when the axes are drawn, and again when their size has changed: layouts settle late."""
+    ax.add_artist(_AtEachSize(act))
+
+
+def draw_legend(ax: Axes, handles: Sequence[Artist]) -> None:
+    """Explain the lines in the band above the board, where the axes are wide enough for it."""
+    spacing = {"handlelength": 1.6, "handletextpad": 0.5, "columnspacing": 1.2, "borderaxespad": 0.0}
+    legend = ax.legend(handles=handles, loc="upper center", ncols=len(handles), frameon=False, fontsize=8.5, **spacing)
+    legend.set_in_layout(False)
+    at_each_size(ax, partial(_fit_legend, ax, legend))
+
+
+def _fit_legend(ax: Axes, legend: Legend) -> None:
+    legend.set_visible(width_of(ax) >= LEGEND_WIDTH)
+    for text in legend.get_texts():
+        text.set_fontsize(letters(ax, 8.5))
+
+
+def patch(shape: Shape, **look: Any) -> Patch:
+    """Return the matplotlib patch of a shape."""
+    if isinstance(shape, Circle):
+        return CirclePatch((shape.center[0], shape.center[1]), shape.radius, **look)
+    return PolygonPatch(shape.vertices, closed=True, **look)
+
+
+def outlines(shapes: Iterable[Shape]) -> Floats:
+    """Return the corners of all shapes, and points all round their circles, shape (N, 2), metres."""
+    return np.vstack([np.empty((0, 2)), *(s.outline(40) if isinstance(s, Circle) else s.vertices for s in shapes)])
+
+
+def draw_areas(ax: Axes, shapes: Iterable[Shape], **look: Any) -> None:
+    """Fill shapes with their kinds' colours, lightly unless ``look`` says otherwise."""
+    for shape in shapes:
+        color = KIND_COLORS[shape.kind]
+        usual = {"facecolor": to_rgba(color, 0.2), "edgecolor": color, "linewidth": 0, "zorder": 1}
+        ax.add_patch(patch(shape, **(usual | look)))
+
+
+def draw_center(ax: Axes, shape: Shape) -> None:
+    """Mark a shape's centre with its kind's sign."""
+    color, marker = KIND_COLORS[shape.kind], KIND_MARKERS[shape.kind]
+    ax.plot(*shape.centroid, marker, color=color, markersize=marks(ax, 6), markeredgewidth=0, zorder=4)
+
+
+def count(n: int, noun: str) -> str:
+    """Return a number with its noun.
+
+    >>> count(0, "shape"), count(1, "shape"), count(1234, "point")
+    ('No shapes', '1 shape', '1,234 points')
+    """
+    number = f"{n:,}" if n else "No"
+    return f"{number} {noun}" if n == 1 else f"{number} {noun}s"

@@ -1,0 +1,256 @@
+"""Pictures: the board, a scan, the points and the clusters.
+
+In:  what one step of the story hands on, and the axes to draw on.
+Out: these axes, with a title that states what there is to see.
+
+>>> plot_points([(0, 0), (0.1, 0)]).get_title(loc="left")
+'2 points on the grid'
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle as CirclePatch
+from numpy.typing import ArrayLike, NDArray
+
+from ..arguments import as_count, as_points, as_positive
+from ..lidar import Lidar, Scans
+from ..raycast import cast_rays
+from ..shapes import KINDS, Circle, Shape
+from ..world import World
+from .labels import write_labels
+from .look import (
+    CLUSTER_COLORS,
+    CLUSTER_MARKERS,
+    GREY,
+    INK,
+    ORANGE,
+    PALE,
+    as_axes,
+    check_type,
+    count,
+    draw_areas,
+    draw_board,
+    draw_center,
+    draw_legend,
+    letters,
+    marks,
+    outlines,
+    set_title,
+    width_of,
+)
+
+Floats = NDArray[np.float64]
+
+ROBOT_RADIUS = 0.037  # m: the e-puck's body
+SIGNS = 6  # larger markers on each cluster, so that it can be told from the others without colour
+
+
+def plot_world(world: World, ax: Axes | None = None) -> Axes:
+    """Draw the board with its shapes, and the names of their kinds where there is room (the paper's Figure 1b, c).
+
+    Parameters
+    ----------
+    world : World
+        The truth.
+    ax : Axes, optional
+        Where to draw.
+
+    Examples
+    --------
+    >>> plot_world(World()).get_title(loc="left")
+    'No shapes'
+    """
+    check_type("world", world, World)
+    ax = as_axes(ax)
+    room = draw_board(ax, world.size, outlines(world.shapes))
+    draw_areas(ax, world.shapes, linewidth=1.5)
+    for shape in world.shapes:
+        draw_center(ax, shape)
+    set_title(ax, _census(world.shapes))
+    write_labels(ax, [(shape.kind, shape) for shape in world.shapes], (), room)
+    return ax
+
+
+def _census(shapes: Sequence[Shape]) -> str:
+    kinds = [shape.kind for shape in shapes]
+    counts = ", ".join(count(kinds.count(kind), kind) for kind in KINDS if kind in kinds)
+    return count(len(shapes), "shape") + (f": {counts}" if counts else "")
+
+
+# --- what the robot sees ------------------------------------------------------------------------------------
+
+
+def plot_scan(
+    world: World, scans: Scans, index: int = 0, ax: Axes | None = None, *, lidar: Lidar | None = None
+) -> Axes:
+    """Draw one scan: the robot, its LiDAR's range, and every beam (the paper's Figure 1a).
+
+    Parameters
+    ----------
+    world : World
+        What stands on the board.
+    scans : Scans
+        What the LiDAR saw.
+    index : int
+        Which of the scans, from 0.
+    ax : Axes, optional
+        Where to draw.
+    lidar : Lidar, optional
+        The sensor whose range is drawn; the paper's by default.
+
+    Raises
+    ------
+    ValueError
+        If there is no scan with that index, or an argument is of another type.
+
+    Examples
+    --------
+    >>> from primkit.lidar import scan
+    >>> world = World([Circle((0.2, 0), 0.05)])
+    >>> plot_scan(world, scan(world, [(0, 0, 0)])).get_title(loc="left")
+    'Scan 0: 9 of 100 beams hit'
+    """
+    check_type("world", world, World)
+    check_type("scans", scans, Scans)
+    check_type("lidar", lidar, Lidar, or_none=True)
+    if as_count(index, "index", least=0) >= len(scans):
+        raise ValueError(f"index must be below the number of scans, got {index} for {len(scans)}")
+    ax, lidar, seen = as_axes(ax), lidar or Lidar(), scans[index : index + 1]
+    draw_board(ax, world.size, Circle(seen.poses[0, :2], lidar.range_max).outline(4), legend=True)
+    draw_areas(ax, world.shapes, linewidth=1.5)
+    draw_legend(ax, [*_draw_beams(ax, world, seen, lidar), *_draw_robot(ax, seen.poses[0], lidar)])
+    hits = f"{seen.hits.sum()} of {seen.hits.size} beams hit"
+    set_title(ax, f"Scan {index}: {'inside a shape, it sees nothing' if seen.inside[0] else hits}")
+    return ax
+
+
+def _draw_beams(ax: Axes, world: World, seen: Scans, lidar: Lidar) -> list[Artist]:
+    """Draw the beams of one scan as far as they go; return what the legend shows."""
+    start, bearings, hit = seen.poses[0, :2], seen.poses[0, 2] + seen.angles, seen.hits[0]
+    turned = np.column_stack([np.broadcast_to(start, (len(bearings), 2)), bearings])
+    free = cast_rays(world, turned, [0.0], lidar.range_max)[:, 0]  # an outline that is too near blocks without a hit
+    reach = np.where(hit, seen.ranges[0], np.minimum(free, lidar.range_max))
+    ends = start + reach[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)])
+    beams = np.stack([turned[:, :2], ends], axis=1)
+    ax.add_collection(LineCollection(beams[~hit], colors=PALE, linewidths=0.6, zorder=2), autolim=False)
+    ax.add_collection(LineCollection(beams[hit], colors=ORANGE, linewidths=0.9, zorder=3), autolim=False)
+    ax.plot(*ends[hit].T, "o", color=INK, markersize=marks(ax, 3), markeredgewidth=0, zorder=4)
+    dot = Line2D([], [], color=ORANGE, marker="o", markersize=3, markerfacecolor=INK, markeredgewidth=0, label="hit")
+    return [dot, Line2D([], [], color=PALE, label="no hit")]
+
+
+def _draw_robot(ax: Axes, pose: Floats, lidar: Lidar) -> list[Artist]:
+    """Draw the robot with its heading, and the ring in which it can see; return what the legend shows."""
+    x, y, heading = pose.tolist()
+    rim: dict[str, Any] = {"color": GREY, "linestyle": "--", "linewidth": 0.9}
+    for radius in (lidar.range_min, lidar.range_max):
+        ax.add_patch(CirclePatch((x, y), radius, fill=False, zorder=2.5, **rim))
+    shell = {"facecolor": "white", "edgecolor": INK, "linewidth": marks(ax, 1.2), "zorder": 2.8}
+    ax.add_patch(CirclePatch((x, y), ROBOT_RADIUS, **shell))
+    nose = ROBOT_RADIUS * np.array([math.cos(heading), math.sin(heading)])
+    ax.plot([x, x + nose[0]], [y, y + nose[1]], color=INK, linewidth=marks(ax, 2), solid_capstyle="butt", zorder=5)
+    body: dict[str, Any] = {"marker": "o", "markerfacecolor": "white", "markeredgecolor": INK, "markersize": 7}
+    ring = f"range {lidar.range_min:g} to {lidar.range_max:g} m"
+    return [Line2D([], [], label=ring, **rim), Line2D([], [], linestyle="none", label="robot", **body)]
+
+
+# --- points and clusters ------------------------------------------------------------------------------------
+
+
+def plot_points(points: ArrayLike, ax: Axes | None = None, *, size: float = 1.0) -> Axes:
+    """Draw the grid's points (the paper's Figure 2a).
+
+    Parameters
+    ----------
+    points : array_like, shape (N, 2)
+        Metres.
+    ax : Axes, optional
+        Where to draw.
+    size : float
+        Side of the board in metres.
+
+    Raises
+    ------
+    ValueError
+        If points are not finite (N, 2), or the size is not above zero.
+
+    Examples
+    --------
+    >>> plot_points([]).get_title(loc="left")
+    'No points on the grid'
+    """
+    points, size = as_points(points), as_positive(size, "size")
+    ax = as_axes(ax)
+    draw_board(ax, size, points)
+    ax.plot(*points.T, "o", color=INK, markersize=marks(ax, 2.4), markeredgewidth=0)
+    set_title(ax, f"{count(len(points), 'point')} on the grid")
+    return ax
+
+
+def plot_clusters(points: ArrayLike, labels: ArrayLike, ax: Axes | None = None, *, size: float = 1.0) -> Axes:
+    """Draw each cluster in its own colour, with its own marker and its number (the paper's Figure 2b).
+
+    Parameters
+    ----------
+    points : array_like, shape (N, 2)
+        Metres.
+    labels : array_like of int, shape (N,)
+        Which cluster each point belongs to, from 0; -1 for strays, which become grey crosses.
+    ax : Axes, optional
+        Where to draw.
+    size : float
+        Side of the board in metres.
+
+    Raises
+    ------
+    ValueError
+        If points are not finite (N, 2), labels are not a whole number for each of them, or the size is not above
+        zero.
+
+    Examples
+    --------
+    >>> plot_clusters([(0, 0), (0, 0.1), (0.4, 0)], [0, 0, -1]).get_title(loc="left")
+    '1 cluster, 1 stray'
+    """
+    points, size = as_points(points), as_positive(size, "size")
+    labels, ax = _as_labels(labels, len(points)), as_axes(ax)
+    draw_board(ax, size, points)
+    strays, numbers = points[labels < 0], np.unique(labels[labels >= 0]).tolist()
+    ax.plot(*strays.T, "x", color=GREY, markersize=marks(ax, 5), markeredgewidth=1)
+    for number in numbers:
+        _draw_cluster(ax, points[labels == number], number)
+    set_title(ax, count(len(numbers), "cluster") + (f", {count(len(strays), 'stray')}" if len(strays) else ""))
+    return ax
+
+
+def _draw_cluster(ax: Axes, cluster: Floats, number: int) -> None:
+    """Draw a cluster's points, a few larger signs spread around it, and its number in the middle."""
+    color, marker = CLUSTER_COLORS[number % len(CLUSTER_COLORS)], CLUSTER_MARKERS[number % len(CLUSTER_MARKERS)]
+    middle = cluster.mean(axis=0)
+    around = cluster[np.argsort(np.arctan2(*(cluster - middle).T))]
+    signs = around[:: -(-len(cluster) // SIGNS)]
+    ax.plot(*cluster.T, "o", color=color, markersize=marks(ax, 3), markeredgewidth=0)
+    sign = ax.plot(*signs.T, marker, color=color, markersize=marks(ax, 7))[0]
+    sign.set(markeredgecolor="white", markeredgewidth=marks(ax, 0.5))
+    size = letters(ax, 12)
+    small = np.ptp(cluster, axis=0).min() * 72 * width_of(ax) < 1.5 * size * np.ptp(ax.get_xlim())
+    spot, shift, side = ((middle[0], cluster[:, 1].max()), size / 2, "bottom") if small else (middle, 0, "center")
+    text = ax.annotate(str(number), spot, (0, shift), textcoords="offset points", ha="center", va=side, zorder=6)
+    text.set(fontsize=size, weight="bold", color=INK)
+
+
+def _as_labels(labels: ArrayLike, n: int) -> NDArray[np.int64]:
+    array = np.asarray(labels)
+    if array.shape != (n,) or (n and array.dtype.kind not in "iu"):
+        got = f"{array.dtype} of shape {array.shape}"
+        raise ValueError(f"labels must be a whole number for each of the {n} points, got {got}")
+    return array.astype(np.int64)
