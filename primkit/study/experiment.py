@@ -1,0 +1,288 @@
+"""Experiment: one map, one method, one row of a study.
+
+The whole story once more, with everything that it depends on in one place: scan, fill the grid, find the shapes,
+compare with the truth.
+
+In:  an ``Experiment``: the map, the settings, the sensor, the seed.
+Out: a ``Row``: the scores under both protocols, the errors in metres, the times in seconds.
+
+>>> from primkit.pipeline import ROBUST
+>>> from primkit.world import random_world
+>>> row = perform(Experiment("mine", random_world(2, rng=0), "ROBUST", ROBUST))
+>>> row.map, row.n_found, row.fair.weighted, row.robot_time
+('mine', 2, 1.0, 7.7)
+
+What counts as time. Computing time is filling the grid and finding the shapes; simulating the scans stands for the
+robot, and scoring is no part of mapping. Robot time is the number of scans times the LiDAR's period. It is stated
+apart and counts all 77 way-points, those inside a shape too, because the paper's robot scans at all of them.
+
+Source: the paper's section 3.3, "Results".
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import sys
+from dataclasses import asdict, dataclass, field
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from time import perf_counter
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..evaluation import Report, evaluate
+from ..grid import Grid
+from ..lidar import Lidar, Scans, scan
+from ..measure import Detection
+from ..pipeline import Settings, find_shapes
+from ..robot import teleport_poses, waypoints
+from ..shapes import Circle, Kind
+from ..world import World
+
+Movement = Literal["automatic", "manual"]
+
+# Another version of these may draw or compute other numbers.
+LIBRARIES = ("numpy", "scipy", "scikit-learn", "shapely")
+
+
+@dataclass(frozen=True)
+class Score:
+    """The scores of one map, each from 0 to 1; ``weighted`` is the total."""
+
+    weighted: float
+    shape: float
+    center: float
+    dimension: float
+
+
+@dataclass(frozen=True)
+class Row:
+    """What became of one map with one method. Rows are equal when all but the measured time is.
+
+    Parameters
+    ----------
+    map, settings : str
+        The names of the map and of the method.
+    kinds : tuple of str
+        The kinds of the map's shapes.
+    movement : {"automatic", "manual"}
+        Set down on way-points, or driven.
+    tolerance : float
+        Of the fair protocol, in metres.
+    told : bool
+        Whether the method was told how many shapes there are.
+    n_found : int
+        How many shapes were found.
+    fair, paper : Score
+        Two-sided within the tolerance, and scored as published; see ``evaluate``.
+    center_errors, dimension_errors : tuple of float
+        found - true for each coordinate and dimension that can be compared, metres; paired fairly.
+    robot_time : float
+        Number of scans times the LiDAR's period, seconds.
+    computing_time : float
+        Filling the grid and finding the shapes, seconds on this machine.
+    """
+
+    map: str
+    settings: str
+    kinds: tuple[Kind, ...]
+    movement: Movement
+    tolerance: float
+    told: bool
+    n_found: int
+    fair: Score
+    paper: Score
+    center_errors: tuple[float, ...]
+    dimension_errors: tuple[float, ...]
+    robot_time: float
+    computing_time: float = field(compare=False)
+
+    @property
+    def n_shapes(self) -> int:
+        """How many shapes there are."""
+        return len(self.kinds)
+
+    @property
+    def count_right(self) -> bool:
+        """Whether as many shapes were found as there are."""
+        return self.n_found == self.n_shapes
+
+
+@dataclass(frozen=True, eq=False)
+class Experiment:
+    """All that one row depends on.
+
+    Parameters
+    ----------
+    map : str
+        The map's name.
+    world : World
+        The map.
+    name : str
+        The method's name.
+    settings : Settings
+        The method. The published one is told the number of shapes, the other finds it.
+    lidar : Lidar
+        The sensor.
+    tolerance : float
+        Of the fair protocol, in metres.
+    seed : int
+        The study's seed.
+    drive : array, shape (P, 3), optional
+        The poses to scan from; the way-points when not given.
+    """
+
+    map: str
+    world: World
+    name: str
+    settings: Settings
+    lidar: Lidar = Lidar()  # noqa: RUF009 - frozen, so that sharing it is safe
+    tolerance: float = 0.005
+    seed: int = 0
+    drive: NDArray[np.float64] | None = None
+
+    def key(self) -> str:
+        """Return all that the row depends on as JSON, the program included: equal when the row is."""
+        known = {
+            "program": program(),
+            "map": self.map,
+            "world": _hash(_as_text(self.world)),
+            "drive": None if self.drive is None else _hash(json.dumps(self.drive.tolist())),
+            "name": self.name,
+            "settings": asdict(self.settings),
+            "lidar": asdict(self.lidar),
+            "tolerance": self.tolerance,
+            "seed": self.seed,
+        }
+        return json.dumps(known, sort_keys=True)
+
+    def rngs(self) -> list[np.random.Generator]:
+        """Return generators for scanning and finding: the same for all methods, others for each map."""
+        own = int(_hash(self.map + _as_text(self.world)), 16)
+        return np.random.default_rng([self.seed, own]).spawn(2)
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """What an experiment saw and found.
+
+    Parameters
+    ----------
+    scans : Scans
+        What the LiDAR saw.
+    points : array, shape (N, 2)
+        The grid's points, metres.
+    told : int or None
+        How many shapes the method was told that there are.
+    found : list of Detection
+        What it found.
+    robot_time, computing_time : float
+        Seconds; see the module's notes.
+    """
+
+    scans: Scans
+    points: NDArray[np.float64]
+    told: int | None
+    found: list[Detection]
+    robot_time: float
+    computing_time: float
+
+
+def perform(experiment: Experiment) -> Row:
+    """Scan, find, score: one row.
+
+    Examples
+    --------
+    >>> from primkit.pipeline import ROBUST
+    >>> perform(Experiment("nothing", World(), "ROBUST", ROBUST)).count_right
+    True
+    """
+    try:
+        run_ = run(experiment)
+    except Exception as error:
+        error.add_note(f"on the map {experiment.map!r} with the settings {experiment.name!r}")
+        raise
+    fair = evaluate(run_.found, experiment.world, experiment.tolerance)
+    return Row(
+        map=experiment.map,
+        settings=experiment.name,
+        kinds=tuple(shape.kind for shape in experiment.world.shapes),
+        movement="automatic" if experiment.drive is None else "manual",
+        tolerance=experiment.tolerance,
+        told=run_.told is not None,
+        n_found=len(run_.found),
+        fair=_score(fair),
+        paper=_score(evaluate(run_.found, experiment.world, protocol="paper")),
+        center_errors=tuple(e for m in fair.matches for e in m.center_error.tolist()),
+        dimension_errors=tuple(e for m in fair.matches for e in m.dimension_error or ()),
+        robot_time=run_.robot_time,
+        computing_time=run_.computing_time,
+    )
+
+
+def run(experiment: Experiment) -> Run:
+    """Scan and find, and measure the time.
+
+    Notes
+    -----
+    Linear algebra runs on one thread meanwhile. Several would add in another order, and the last bit would depend on
+    the number of workers; the tables are small, so that nothing is lost by it.
+    """
+    from threadpoolctl import threadpool_limits
+
+    world, settings, drive = experiment.world, experiment.settings, experiment.drive
+    scan_rng, find_rng = experiment.rngs()
+    poses = teleport_poses(world) if drive is None else drive
+    scans = scan(world, poses, experiment.lidar, rng=scan_rng)
+    with threadpool_limits(1):
+        _warm_up(settings.method)
+        begun = perf_counter()
+        grid = Grid()
+        grid.add(scans)
+        points = grid.points()
+        # More shapes than points cannot be asked for, and a faulty sensor may see nearly nothing.
+        told = min(len(world.shapes), len(points)) if settings.method == "published" else None
+        found = find_shapes(points, told, settings=settings, rng=find_rng)
+        computing_time = perf_counter() - begun
+    robot_time = len(waypoints(world.size) if drive is None else drive) * experiment.lidar.period
+    return Run(scans, points, told, found, robot_time, computing_time)
+
+
+def _score(report: Report) -> Score:
+    return Score(
+        weighted=report.weighted_accuracy,
+        shape=report.shape_accuracy,
+        center=report.center_accuracy,
+        dimension=report.dimension_accuracy,
+    )
+
+
+@cache
+def _warm_up(method: Literal["joint", "published"]) -> None:
+    """Find a circle, so that a process's first time is not that of loading the libraries."""
+    quick = Settings(method=method, line_trials=1, circle_trials=1)
+    find_shapes(Circle((0, 0), 0.06).outline(60), 1, settings=quick, rng=0)
+
+
+@cache
+def program() -> str:
+    """Return what identifies the program: its version, a hash of its text (students change it), its libraries."""
+    text = b"".join(path.read_bytes() for path in sorted(Path(__file__).parents[1].rglob("*.py")))
+    # The package itself is loaded before any of its modules; importing it from here would turn the story round.
+    package = sys.modules[__name__.partition(".")[0]]
+    own = f"primkit {package.__version__} {hashlib.sha256(text).hexdigest()[:16]}"
+    return ", ".join([own, *(f"{library} {version(library)}" for library in LIBRARIES)])
+
+
+def _as_text(world: World) -> str:
+    """Return everything that a world is made of, to the last bit."""
+    numbers = [[*s.center, s.radius] if isinstance(s, Circle) else s.vertices.ravel() for s in world.shapes]
+    return json.dumps([world.size, *([s.kind, *map(float, n)] for s, n in zip(world.shapes, numbers, strict=True))])
+
+
+def _hash(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:16]

@@ -1,0 +1,207 @@
+"""Study: many maps, many methods, in parallel.
+
+In:  worlds (a dict by name, or any iterable), settings by name, the sensor, a seed.
+Out: a list of ``Row``: one for each map and settings, with the scores under both protocols, errors and times.
+
+>>> from primkit.world import random_world
+>>> rows = run_study([random_world(2, rng=seed) for seed in (0, 1)], {"ROBUST": ROBUST}, jobs=1)
+>>> [(row.map, row.settings, row.fair.weighted) for row in rows]
+[('1', 'ROBUST', 1.0), ('2', 'ROBUST', 1.0)]
+
+A study can be killed at any time: each finished row goes to a journal, and the same call continues where the last
+one stopped. Scores and errors depend neither on that nor on the number of workers: each map has random numbers of
+its own, from the study's seed, the map's name and its shapes.
+
+Source: the paper's section 3.3, "Results"; the 34 maps are ``formats.paper_suite``.
+"""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Iterable, Iterator, Mapping, Sized
+from contextlib import closing, contextmanager
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from ..arguments import as_count, as_poses, as_positive
+from ..formats import StrPath, paper_suite
+from ..lidar import Lidar
+from ..pipeline import PAPER, ROBUST, Settings
+from ..world import World
+from .experiment import Experiment, Row, perform
+from .journal import append, open_journal
+
+METHODS: Mapping[str, Settings] = {"PAPER": PAPER, "ROBUST": ROBUST}
+
+
+def run_study(
+    worlds: Mapping[str, World] | Iterable[World] | None = None,
+    settings: Mapping[str, Settings] = METHODS,
+    *,
+    lidar: Lidar | None = None,
+    tolerance: float = 0.005,
+    seed: int = 0,
+    drives: Mapping[str, ArrayLike] | None = None,
+    folder: StrPath | None = None,
+    jobs: int | None = -1,
+    progress: bool = True,
+) -> list[Row]:
+    """Map every world with every method, and say how right each is.
+
+    Parameters
+    ----------
+    worlds : dict of str to World, or iterable of World, optional
+        The maps; the paper's 34 when not given. An iterable's are called "1", "2", and so on, and are drawn as
+        they are needed: thousands need no more memory than a few.
+    settings : dict of str to Settings
+        The methods by name. One with ``method="published"`` is told the number of shapes, the others find it.
+    lidar : Lidar, optional
+        The sensor; the paper's by default. All methods get the same scans of a map.
+    tolerance : float
+        Of the fair protocol, in metres.
+    seed : int
+        The same seed gives the same rows, bit for bit, times apart.
+    drives : dict of str to array_like, shape (P, 3), optional
+        For each map, the poses of a drive to scan from; the way-points when not given.
+    folder : str or path, optional
+        Where the journal is kept, in ``journal.jsonl``; made when it is not there. A row that it holds is not
+        computed again, unless the map, the method, the sensor, the seed or the program has changed.
+    jobs : int, optional
+        Number of processes; -1 for one on each core. None leaves it to ``joblib.parallel_config``, which also
+        chooses another backend, such as dask. Times are most comparable with 1.
+    progress : bool
+        Show a progress bar on stderr, when that is a terminal.
+
+    Returns
+    -------
+    list of Row
+        In the order of the worlds, and for each in the order of the settings.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, a drive is missing, or the journal holds something else than rows.
+    OSError
+        If the journal cannot be written.
+
+    Examples
+    --------
+    >>> run_study([], jobs=1)
+    []
+    """
+    common = {
+        "lidar": _checked(Lidar() if lidar is None else lidar, Lidar, "lidar"),
+        "tolerance": as_positive(tolerance, "tolerance", zero=True),
+        "seed": as_count(seed, "seed", least=0),
+    }
+    for chosen in settings.values():
+        _checked(chosen, Settings, "each of the settings")
+    jobs, worlds = _checked_jobs(jobs), paper_suite() if worlds is None else worlds
+    experiments = _experiments(worlds, settings, drives, common)
+    total = len(worlds) * len(settings) if isinstance(worlds, Sized) else None
+    rows: dict[int, Row] = {}
+    with open_journal(folder) as (done, file), _bar(total, progress) as bar:
+        for number, row, key in _performed(experiments, done, rows, jobs):
+            rows[number] = row
+            append(file, row, key)
+            bar.update(len(rows) - bar.n)
+        bar.update(len(rows) - bar.n)
+    return [rows[number] for number in sorted(rows)]
+
+
+# --- the work -----------------------------------------------------------------------------------------------
+
+
+def _experiments(
+    worlds: Mapping[str, World] | Iterable[World],
+    settings: Mapping[str, Settings],
+    drives: Mapping[str, ArrayLike] | None,
+    common: Mapping[str, Any],
+) -> Iterator[Experiment]:
+    """Yield what is to be done, map by map; the worlds are drawn one after the other."""
+    named = worlds.items() if isinstance(worlds, Mapping) else ((str(k), w) for k, w in enumerate(worlds, start=1))
+    for map_name, world in named:
+        _checked(world, World, "each of the worlds")
+        if drives is not None and map_name not in drives:
+            raise ValueError(f"drives must hold one for each map, got none for {map_name!r}")
+        drive = None if drives is None else as_poses(drives[map_name])
+        for name, chosen in settings.items():
+            yield Experiment(map_name, world, name, chosen, drive=drive, **common)
+
+
+def _performed(
+    experiments: Iterable[Experiment], done: Mapping[str, Row], rows: dict[int, Row], jobs: int | None
+) -> Iterator[tuple[int, Row, str]]:
+    """Yield (number, row, key) of each experiment as it ends; those done before go to ``rows``."""
+    from joblib import Parallel, delayed
+
+    keys: dict[int, str] = {}
+    failures: list[Exception] = []
+
+    def waiting() -> Iterator[Any]:
+        try:
+            for number, experiment in enumerate(experiments):
+                key = experiment.key()
+                if key in done:
+                    rows[number] = done[key]
+                else:
+                    keys[number] = key
+                    yield delayed(_numbered)(number, experiment)
+        except Exception as error:  # a world that cannot be drawn: what runs by now is to end, and be written, first
+            failures.append(error)
+
+    # Only as many experiments as the workers need next are made ahead: all of them are never in memory at once.
+    with _deaf_children():
+        running = Parallel(n_jobs=jobs, return_as="generator_unordered")(waiting())
+    with closing(running) as results:
+        for number, row in results:
+            yield number, row, keys.pop(number)
+    if failures:
+        raise failures[0]
+
+
+@contextmanager
+def _deaf_children() -> Iterator[None]:
+    """Start processes that do not hear Ctrl-C: it is for their parent, which ends them without a word.
+
+    A terminal sends the signal to all of them, and a process keeps the mask that it was started with.
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _numbered(number: int, experiment: Experiment) -> tuple[int, Row]:
+    return number, perform(experiment)
+
+
+def _bar(total: int | None, progress: bool) -> Any:
+    from tqdm import tqdm
+
+    # disable=None: shown on a terminal only.
+    return tqdm(total=total, unit="row", file=sys.stderr, disable=None if progress else True, dynamic_ncols=True)
+
+
+# --- arguments ----------------------------------------------------------------------------------------------
+
+
+def _checked(value: Any, kind: type, name: str) -> Any:
+    if not isinstance(value, kind):
+        raise ValueError(f"{name} must be {kind.__name__}, got {type(value).__name__}")
+    return value
+
+
+def _checked_jobs(jobs: int | None) -> int | None:
+    if jobs is None or jobs == -1:
+        return jobs
+    try:
+        return as_count(jobs, "jobs")
+    except ValueError:
+        raise ValueError(f"jobs must be a whole number >= 1, -1 for every core, or None, got {jobs!r}") from None

@@ -1,0 +1,210 @@
+"""Published: the paper's figures, and the tables that put ours beside them.
+
+In:  the rows of a study.
+Out: Tables 1 and 2 (automatic movement) and 3 and 4 (manual movement), as far as the rows fill them.
+
+>>> one, two = PUBLISHED["automatic"]["circle"], PUBLISHED["automatic"]["2 shapes"]
+>>> one.score.weighted, one.time, two.score.weighted, two.time
+(1.0, 10.03, 0.83, 10.37)
+
+A mean's 95 % interval is the percentile bootstrap over maps: maps are the independent draws, not the shapes or
+coordinates on them. It is as wide as the maps differ; when all of them score alike it has no width, which a note says.
+
+Sources: the figures are those of "Mapping of Primitives in Mobile Robotics Using Computer Vision", Tables 1 to 4; the
+interval is that of Efron (1979), "Bootstrap methods: another look at the jackknife".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import astuple, dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..shapes import KINDS
+from .experiment import Movement, Row, Score
+from .table import Line, Table, as_csv
+
+RESAMPLES = 5000  # the ends of an interval then differ by about a hundredth of its width from draw to draw
+BLOCK = 1_000_000  # counts drawn at once: 8 MB, however many maps there are
+AVERAGE = "average"
+
+
+@dataclass(frozen=True)
+class Figures:
+    """One line of a published table: scores, seconds (robot and computing together), and the number of maps."""
+
+    score: Score
+    time: float
+    n: int
+
+
+def _figures(n: int, time: float, *scores: float) -> Figures:
+    return Figures(Score(*scores), time, n)
+
+
+# total, shape type, centre position, shape measurements
+PUBLISHED: Mapping[Movement, Mapping[str, Figures]] = {
+    "automatic": {
+        "circle": _figures(1, 10.03, 1.0, 1.0, 1.0, 1.0),  # Table 1
+        "triangle": _figures(1, 9.43, 0.85, 1.0, 0.50, 1.0),
+        "rectangle": _figures(1, 9.48, 0.85, 1.0, 1.0, 0.50),
+        "pentagon": _figures(1, 9.70, 0.70, 1.0, 1.0, 0.0),
+        AVERAGE: _figures(4, 9.66, 0.85, 1.0, 0.875, 0.63),
+        "2 shapes": _figures(10, 10.37, 0.83, 1.0, 0.85, 0.57),  # Table 2
+        "3 shapes": _figures(10, 10.70, 0.83, 1.0, 0.87, 0.57),
+        "4 shapes": _figures(10, 12.03, 0.87, 1.0, 0.92, 0.67),
+    },
+    "manual": {
+        "circle": _figures(1, 13.50, 1.0, 1.0, 1.0, 1.0),  # Table 3
+        "triangle": _figures(1, 12.77, 0.55, 1.0, 0.5, 0.0),
+        "rectangle": _figures(1, 14.18, 0.85, 1.0, 1.0, 0.50),
+        "pentagon": _figures(1, 13.45, 0.70, 1.0, 1.0, 0.0),
+        AVERAGE: _figures(4, 13.48, 0.77, 1.0, 0.875, 0.38),
+        "2 shapes": _figures(10, 28.34, 0.72, 1.0, 0.70, 0.38),  # Table 4
+        "3 shapes": _figures(10, 39.25, 0.67, 0.86, 0.68, 0.40),
+        "4 shapes": _figures(10, 58.25, 0.80, 1.0, 0.83, 0.50),
+    },
+}
+
+
+def tables(rows: Iterable[Row]) -> tuple[Table, ...]:
+    """Return the paper's tables with our means beside the published figures.
+
+    Parameters
+    ----------
+    rows : iterable of Row
+        Of ``run_study``: any maps, settings and movements.
+
+    Returns
+    -------
+    tuple of Table
+        Tables 1 and 2 for rows with automatic movement, 3 and 4 for manual: those that the rows have maps for.
+
+    Raises
+    ------
+    ValueError
+        If the rows were scored with different tolerances.
+
+    Examples
+    --------
+    >>> tables([])
+    ()
+    """
+    rows = list(rows)
+    tolerances = sorted({row.tolerance for row in rows})
+    if len(tolerances) > 1:
+        raise ValueError(
+            f"the rows of a table must share one tolerance, got {', '.join(f'{t:g}' for t in tolerances)} m"
+        )
+    made = []
+    for first, movement in ((1, "automatic"), (3, "manual")):
+        moved = [row for row in rows if row.movement == movement]
+        one = [row for row in moved if row.n_shapes == 1]
+        several = [row for row in moved if row.n_shapes != 1]
+        by_kind = {kind: [row for row in one if row.kinds == (kind,)] for kind in KINDS}
+        counts = sorted({row.n_shapes for row in several})
+        by_count = {f"{n} shapes": [row for row in several if row.n_shapes == n] for n in counts}
+        made.append(_table(f"Table {first}. One shape, {movement} movement", one, by_kind | {AVERAGE: one}))
+        made.append(_table(f"Table {first + 1}. Several shapes, {movement} movement", several, by_count))
+    return tuple(table for table in made if table.lines)
+
+
+def rows_as_csv(rows: Iterable[Row]) -> str:
+    """Return the rows of a study as CSV, one line each: scores from 0 to 1, errors in metres, times in seconds.
+
+    Of the errors, each line holds the largest of a centre's coordinates and of the dimensions.
+    """
+    names = [f"{protocol}_{part.name}" for protocol in ("fair", "paper") for part in fields(Score)]
+    header = ("map", "settings", "movement", "kinds", "n_shapes", "told", "n_found", *names)
+    errors = ("largest_center_error_m", "largest_dimension_error_m", "robot_time_s", "computing_time_s")
+    lines = []
+    for row in rows:
+        what = (row.map, row.settings, row.movement, " ".join(row.kinds), row.n_shapes, row.told, row.n_found)
+        largest = [max(map(abs, errors), default=None) for errors in (row.center_errors, row.dimension_errors)]
+        lines.append((*what, *astuple(row.fair), *astuple(row.paper), *largest, row.robot_time, row.computing_time))
+    return as_csv(header + errors, lines)
+
+
+def interval(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the ends of the 95 % interval of each column's mean: percentile bootstrap over rows.
+
+    Parameters
+    ----------
+    values : array, shape (N, Q)
+        One row for each map.
+
+    Examples
+    --------
+    >>> low, high = interval(np.array([[0.0, 1.0], [1.0, 1.0]] * 8))
+    >>> low.tolist(), high.tolist()
+    ([0.25, 1.0], [0.75, 1.0])
+    """
+    n = len(values)
+    rng = np.random.default_rng(0)  # fixed: the same rows give the same table
+    step = max(1, BLOCK // n)
+    means = [
+        rng.multinomial(n, np.full(n, 1 / n), size=min(step, RESAMPLES - start)) @ values / n
+        for start in range(0, RESAMPLES, step)
+    ]
+    low, high = np.percentile(np.vstack(means), (2.5, 97.5), axis=0)
+    return low, high
+
+
+def _table(title: str, rows: Sequence[Row], groups: Mapping[str, Sequence[Row]]) -> Table:
+    """Return one table: for each group of maps the published figures, then each method under each protocol."""
+    lines = [line for maps, chosen in groups.items() if chosen for line in _lines(maps, chosen)]
+    return Table(title, tuple(lines), _notes(title, rows, lines))
+
+
+def _lines(maps: str, rows: Sequence[Row]) -> list[Line]:
+    figures = PUBLISHED[rows[0].movement].get(maps)
+    lines = [] if figures is None else [Line(maps, "published", "", figures.n, figures.score, time=figures.time)]
+    for method in dict.fromkeys(row.settings for row in rows):
+        lines += _means(maps, method, [row for row in rows if row.settings == method])
+    return lines
+
+
+def _means(maps: str, method: str, rows: Sequence[Row]) -> list[Line]:
+    """Return a method's means under the published protocol and under the fair one."""
+    values = np.array([[*astuple(row.paper), *astuple(row.fair)] for row in rows])
+    ends = interval(values) if len(rows) > 1 else None
+    robot = float(np.mean([row.robot_time for row in rows]))
+    computing = float(np.mean([row.computing_time for row in rows]))
+
+    def line(scoring: str, part: slice) -> Line:
+        low, high = (None, None) if ends is None else (Score(*end[part].tolist()) for end in ends)
+        mean = Score(*values.mean(axis=0)[part].tolist())
+        return Line(maps, method, scoring, len(rows), mean, low, high, robot, computing, robot + computing)
+
+    return [line("as published", slice(4)), line(_within(rows[0]), slice(4, 8))]
+
+
+def _notes(title: str, rows: Sequence[Row], lines: Sequence[Line]) -> tuple[str, ...]:
+    """Return what a reader must know to read the table."""
+    if not rows:
+        return ()
+    counts = []
+    for method in dict.fromkeys(row.settings for row in rows):
+        theirs = [row for row in rows if row.settings == method]
+        told = ", being told it" if all(row.told for row in theirs) else ""
+        counts.append(f"{method} on {sum(row.count_right for row in theirs)} of {len(theirs)} maps{told}")
+    notes = [
+        "total = 0.4 shape (type) + 0.3 centre (position) + 0.3 dimensions (shape measurements).",
+        f"published: the paper's {title.split('.')[0]}, on maps of its own.",
+        "as published: scored like the paper, rounded to 1 cm, and whatever is too small counts as right.",
+        f"{_within(rows[0])}: right when at most that far off, either way, unrounded.",
+        "time: robot (scans x period) + computing; the published time is both together.",
+        f"Right number of shapes: {'; '.join(counts)}.",
+    ]
+    several = [line for line in lines if line.low is not None]
+    if several:
+        notes.append("In brackets: 95 % interval of the mean over the maps (bootstrap).")
+    if any(line.mean.weighted == 1 for line in several):
+        notes.append("Where all n maps score 1, up to about 3/n of all such maps may still score less (rule of three).")
+    return tuple(notes)
+
+
+def _within(row: Row) -> str:
+    return f"within {1000 * row.tolerance:g} mm"
