@@ -37,8 +37,8 @@ _STORY = {
     "pipeline": ("find_shapes", "Settings", "PAPER", "ROBUST"),
     "evaluation": ("evaluate", "match", "Report"),
     "formats": ("load_world", "save_world", "load_scans", "save_scans", "paper_suite"),
-    "study": ("run_study",),
-    "plots": ("plot_world", "plot_scan", "plot_points", "plot_clusters", "plot_found", "plot_story"),
+    "study": ("run_study", "tables"),
+    "plots": ("plot_world", "plot_scan", "plot_points", "plot_clusters", "plot_found", "plot_story", "save_figure"),
 }
 _HOME = {name: module for module, names in _STORY.items() for name in names}
 
@@ -68,11 +68,11 @@ if TYPE_CHECKING:
     from .lines import Line, find_lines, fit_line
     from .measure import Detection, measure_shape
     from .pipeline import PAPER, ROBUST, Settings, find_shapes
-    from .plots import plot_clusters, plot_found, plot_points, plot_scan, plot_story, plot_world
+    from .plots import plot_clusters, plot_found, plot_points, plot_scan, plot_story, plot_world, save_figure
     from .ransac import run_ransac, trials_needed
     from .raycast import cast_rays
     from .robot import skipped_waypoints, teleport_poses
     from .segmentation import count_by_silhouette, kmeans, link, segment
     from .shapes import Circle, Polygon
-    from .study import run_study
+    from .study import run_study, tables
     from .world import World, random_world

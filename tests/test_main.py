@@ -1,0 +1,491 @@
+"""The command line: what it prints and writes, and how it refuses: one sentence, exit code 2, never a traceback."""
+
+import errno
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import primkit.study
+from primkit.__main__ import main
+from primkit.formats import load_world, save_world
+from primkit.shapes import Circle, Polygon
+from primkit.study import JOURNAL
+from primkit.world import World, random_world
+
+ROOT = Path(__file__).resolve().parent.parent
+posix = pytest.mark.skipif(os.name != "posix", reason="signals and closed pipes work differently on Windows")
+
+
+def command(*words, warnings="error"):
+    return [sys.executable, "-W", warnings, "-m", "primkit", *map(str, words)]
+
+
+def fresh(*words, **more):
+    """What a new process prints and returns; it runs at the top of the repository."""
+    return subprocess.run(command(*words), capture_output=True, cwd=ROOT, check=False, timeout=120, **more)
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    """Every test works in a folder of its own."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def maps(here):
+    """Two small maps in a folder."""
+    (here / "maps").mkdir()
+    save_world(World([Circle((0.1, 0.0), 0.06)]), here / "maps" / "one.geojson")
+    save_world(random_world(2, rng=3), here / "maps" / "two.json")
+    (here / "maps" / "notes.txt").write_text("no map")
+    return here / "maps"
+
+
+# --- help and version ---------------------------------------------------------------------------------------
+
+HELP = {
+    "": [
+        "usage: primkit [-h] [--version] COMMAND ...",
+        "map       simulate a board, map it, and compare with the truth",
+        "study     map many boards: the paper's Tables 1 and 2 beside ours",
+        "make-map  write a random board to a GeoJSON file",
+        "primkit make-map --shapes 6 --style free --out room.geojson",
+    ],
+    "map": [
+        "usage: primkit map [-h] [--shapes N] [--seed S] [--style paper|free]",
+        "number of shapes on a board of 1 m x 1 m (default: 4)",
+        "seed of all that is random, a whole number (default: 7)",
+        "paper: upright, at most 4 shapes; free: at any angle (default: paper)",
+        "a board of your own, GeoJSON (default: a random one)",
+        "the method: ours, or as published (default: robust)",
+        "standard deviation of the ranges in mm (default: 0)",
+        "share of beams with a random range, 0 to 1 (default: 0)",
+        "folder for map.png, found.geojson and truth.geojson (default: out)",
+        "primkit map --settings paper           the published method",
+    ],
+    "study": [
+        "GeoJSON files, or folders of them (default: the paper's 34 maps)",
+        "the method: ours, as published, or both (default: both)",
+        "number of processes (default: one on each core)",
+        "forget the journal of earlier runs",
+        "Once stopped, a study continues when the same command is given again",
+    ],
+    "make-map": [
+        "least distance between two shapes in mm (default: 50)",
+        "circle, triangle, rectangle or pentagon, for each shape (default: drawn)",
+        "the file; one that is there is replaced (default: map.geojson)",
+    ],
+}
+
+
+@pytest.mark.parametrize(("name", "phrases"), HELP.items(), ids=lambda value: value if isinstance(value, str) else "")
+def test_help(name, phrases, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    assert main([*name.split(), "--help"]) == 0
+    out, err = capsys.readouterr()
+    told = " ".join(out.split())
+    assert [phrase for phrase in phrases if " ".join(phrase.split()) not in told] == []
+    assert err == ""
+    assert out.isascii()
+    assert max(map(len, out.splitlines())) <= 88
+
+
+def test_no_command_shows_the_help(capsys):
+    assert main([]) == 0
+    assert capsys.readouterr().out.startswith("usage: primkit [-h] [--version] COMMAND ...")
+
+
+def test_version(capsys):
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"primkit {primkit.__version__}\n"
+
+
+def test_help_loads_nothing_heavy():
+    code = (
+        "import sys; from primkit.__main__ import main; main(['map', '--help'])\n"
+        "print([name for name in ('numpy', 'scipy', 'sklearn', 'matplotlib', 'joblib') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+# --- map ----------------------------------------------------------------------------------------------------
+
+
+def test_map_as_a_newcomer_sees_it(here, capsys):
+    assert main(["map", "--shapes", "2", "--seed", "3"]) == 0
+    out, err = capsys.readouterr()
+    board, robot, lidar, found, times, *rest = out.splitlines()
+    assert board == "Board  2 shapes: pentagon, circle; 1 m x 1 m (random: seed 3, paper style)"
+    assert re.fullmatch(r"Robot  77 way-points, \d+ skipped inside a shape(: (\(-?0\.\d\d, -?0\.\d\d\) )+m)?", robot)
+    assert re.fullmatch(r"LiDAR  \d+ hits on \d+ cells of 1 mm; range noise 0 mm", lidar)
+    assert found == "Found  2 shapes with the settings ROBUST"
+    assert re.fullmatch(r"Time   robot 7\.7 s \(all way-points x 0\.1 s\), computing \d+\.\d\d s", times)
+    assert rest[0] == ""
+    assert rest[1].startswith("true shape  found as")
+    assert "weighted accuracy 1.000 = 0.4 x shape 1.000 + 0.3 x centre 1.000" in out
+    wrote = ", ".join(str(Path("out", name)) for name in ("map.png", "found.geojson", "truth.geojson"))
+    assert rest[-2:] == [
+        f"Wrote  {wrote}",
+        f"Next   open {Path('out', 'map.png')} to see it all; in Python, primkit.load_world reads the two maps.",
+    ]
+    assert err == ""
+    assert sorted(path.name for path in (here / "out").iterdir()) == ["found.geojson", "map.png", "truth.geojson"]
+
+
+def test_map_files_can_be_read_back():
+    assert main(["map", "--shapes", "2", "--seed", "3", "--noise", "1", "--out", "a/b"]) == 0
+    assert load_world("a/b/truth.geojson") == random_world(2, rng=3)
+    found = load_world("a/b/found.geojson")
+    assert sorted(shape.kind for shape in found.shapes) == ["circle", "pentagon"]
+    for feature in json.loads(Path("a/b/found.geojson").read_bytes())["features"]:
+        known = feature["properties"]
+        assert 0 < known["rms"] < 0.003
+        assert known["n_points"] > 50
+        assert known["margin"] > 10
+        assert len(known["seen"]) == (1 if known["kind"] == "circle" else 5)
+    assert Path("a/b/map.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.usefixtures("maps")
+def test_map_of_a_file_with_the_published_method(capsys):
+    assert main(["map", "--map", "maps/two.json", "--settings", "paper", "--out", "out"]) == 0
+    out = capsys.readouterr().out
+    assert "1 m x 1 m (maps/two.json)" in out.replace("\\", "/")
+    assert "with the settings PAPER, being told that there are 2\n" in out
+    assert load_world("out/truth.geojson") == load_world("maps/two.json")
+
+
+@pytest.mark.parametrize("words", [["--shapes", "0"], ["--map", "wall.geojson"]], ids=["empty board", "out of sight"])
+def test_map_where_nothing_is_to_be_found(words, capsys):
+    far = Polygon([(0.9, 0.9), (1.0, 0.9), (1.0, 1.0)])
+    save_world(World([far]), "wall.geojson")
+    assert main(["map", *words]) == 0
+    assert "Found  0 shapes" in capsys.readouterr().out
+    assert load_world("out/found.geojson").shapes == ()
+
+
+def test_map_with_a_bad_sensor(capsys):
+    assert main(["map", "--shapes", "1", "--noise", "3.5", "--spurious", "0.02", "--settings", "paper"]) == 0
+    assert "range noise 3.5 mm" in capsys.readouterr().out
+
+
+def test_two_fresh_processes_write_the_same_bytes(tmp_path):
+    words = ("map", "--shapes", "4", "--noise", "2", "--spurious", "0.01", "--out")
+    done = [fresh(*words, tmp_path / name) for name in ("a", "b")]
+    assert [(d.returncode, d.stderr) for d in done] == [(0, b"")] * 2
+    for name in ("map.png", "found.geojson", "truth.geojson"):
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes(), name
+    told = [re.sub(rb"computing [\d.]+ s", b"", d.stdout.split(b"\nWrote")[0]) for d in done]
+    assert told[0] == told[1]
+
+
+def test_a_map_that_cannot_be_written_leaves_the_old_one(monkeypatch, capsys):
+    assert main(["map", "--shapes", "1"]) == 0
+    before = {path.name: path.read_bytes() for path in Path("out").iterdir()}
+    capsys.readouterr()
+
+    def full(*_, **__):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    assert main(["map", "--shapes", "1", "--seed", "8"]) == 2
+    assert capsys.readouterr().err == "primkit: map.png: cannot be written: No space left on device\n"
+    assert {path.name: path.read_bytes() for path in Path("out").iterdir()} == before
+
+
+# --- study --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.usefixtures("maps")
+def test_study_prints_tables_and_writes_them(capsys):
+    assert main(["study", "--maps", "maps", "--jobs", "1"]) == 0
+    out, err = capsys.readouterr()
+    assert "Table 1. One shape, automatic movement\n" in out
+    assert "\n2 shapes, 1 map (published: 10)\n published            0.830" in out
+    assert "\n ROBUST within 5 mm   1.000 " in out
+    assert "Maps   2 with PAPER and ROBUST; 0 of 4 results were in the journal already\n" in out
+    names = ["table-1.csv", "table-2.csv", "rows.csv", JOURNAL]
+    assert f"Wrote  {', '.join(str(Path('out', name)) for name in names)}\n" in out
+    assert sorted(path.name for path in Path("out").iterdir()) == sorted(names)
+    lines = Path("out/rows.csv").read_text(encoding="utf-8").splitlines()
+    assert [line.split(",")[:2] for line in lines[1:]] == [
+        ["one", "PAPER"],
+        ["one", "ROBUST"],
+        ["two", "PAPER"],
+        ["two", "ROBUST"],
+    ]
+    assert (out.isascii(), err) == (True, "")
+
+
+@pytest.mark.usefixtures("maps")
+def test_study_continues_or_starts_anew(capsys):
+    words = ["study", "--maps", "maps", "--jobs", "1", "--settings"]
+    told = []
+    for more in (["robust"], ["both"], ["robust", "--fresh"]):
+        assert main([*words, *more]) == 0
+        told.append(capsys.readouterr().out.split("Maps   ")[1].splitlines()[0])
+    assert told == [
+        "2 with ROBUST; 0 of 2 results were in the journal already",
+        "2 with PAPER and ROBUST; 2 of 4 results were in the journal already",
+        "2 with ROBUST; 0 of 2 results were in the journal already",
+    ]
+    assert len(Path("out", JOURNAL).read_bytes().splitlines()) == 2
+
+
+@pytest.mark.usefixtures("maps")
+def test_study_takes_files_too(capsys):
+    assert main(["study", "--maps", "maps/two.json", "maps/one.geojson", "--settings", "robust", "--jobs", "1"]) == 0
+    assert "Maps   2 with ROBUST" in capsys.readouterr().out
+
+
+def test_two_fresh_studies_agree_in_all_but_time(maps, tmp_path):
+    files = {}
+    for jobs in (1, 2):
+        done = fresh("study", "--maps", maps, "--settings", "robust", "--jobs", jobs, "--out", tmp_path / str(jobs))
+        assert (done.returncode, done.stderr) == (0, b"")
+        lines = (tmp_path / str(jobs) / "rows.csv").read_bytes().splitlines()
+        files[jobs] = [line.rsplit(b",", 1)[0] for line in lines]  # the last column is the measured time
+    assert files[1] == files[2]
+
+
+@posix
+def test_study_stopped_by_ctrl_c_continues(tmp_path):
+    words = command("study", "--out", tmp_path, "--jobs", "2")
+    process = subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
+    journal = tmp_path / JOURNAL
+    for _ in range(3000):
+        if process.poll() is not None or (journal.exists() and b"\n" in journal.read_bytes()):
+            break
+        time.sleep(0.01)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: the workers get it as well
+    out, err = process.communicate(timeout=60)
+    assert err.decode() == f"primkit: stopped; the same command continues, with what {journal} holds\n"
+    assert (process.returncode, out) == (130, b"")
+    assert journal.read_bytes().endswith(b"\n")
+
+
+# --- make-map -----------------------------------------------------------------------------------------------
+
+
+def test_make_map(capsys):
+    assert main(["make-map", "--shapes", "3", "--seed", "11", "--out", "a.geojson"]) == 0
+    assert load_world("a.geojson") == random_world(3, rng=11)
+    assert capsys.readouterr().out == (
+        f"Board  3 shapes: {', '.join(s.kind for s in random_world(3, rng=11).shapes)}"
+        " (random: seed 11, paper style, gap 50 mm)\nWrote  a.geojson\nNext   primkit map --map a.geojson\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("words", "world"),
+    [
+        ([], {"n": 4, "rng": 7}),
+        (["--kinds", "circle", "pentagon"], {"n": 2, "kinds": ("circle", "pentagon"), "rng": 7}),
+        (["--shapes", "6", "--style", "free", "--gap", "30"], {"n": 6, "style": "free", "gap": 0.03, "rng": 7}),
+        (["--shapes", "0"], {"n": 0, "rng": 7}),
+    ],
+    ids=["defaults", "kinds tell the number", "free", "empty"],
+)
+def test_make_map_draws_what_random_world_draws(words, world):
+    assert main(["make-map", *words]) == 0
+    assert load_world("map.geojson") == random_world(**world)
+
+
+# --- refusals -----------------------------------------------------------------------------------------------
+
+SEE = {name: f" (see primkit {name} --help)" for name in ("map", "study", "make-map")}
+REFUSED = {
+    "shapes in words": (
+        "map --shapes four",
+        f"primkit map: argument --shapes: must be a whole number >= 0, got 'four'{SEE['map']}",
+    ),
+    "negative shapes": (
+        "map --shapes -1",
+        f"primkit map: argument --shapes: must be a whole number >= 0, got '-1'{SEE['map']}",
+    ),
+    "too many shapes": (
+        "map --shapes 5",
+        'primkit: the paper\'s style has room for at most 4 shapes, got 5; use style="free" for more',
+    ),
+    "fractional seed": (
+        "map --seed 0.5",
+        f"primkit map: argument --seed: must be a whole number >= 0, got '0.5'{SEE['map']}",
+    ),
+    "style": (
+        "map --style wild",
+        f"primkit map: argument --style: must be paper or free, got 'wild'{SEE['map']}",
+    ),
+    "settings": (
+        "map --settings both",
+        f"primkit map: argument --settings: must be robust or paper, got 'both'{SEE['map']}",
+    ),
+    "noise": (
+        "map --noise -1",
+        f"primkit map: argument --noise: must be a number of millimetres >= 0, got '-1'{SEE['map']}",
+    ),
+    "noise, not a number": (
+        "map --noise nan",
+        f"primkit map: argument --noise: must be a number of millimetres >= 0, got 'nan'{SEE['map']}",
+    ),
+    "noise, infinite": (
+        "map --noise inf",
+        f"primkit map: argument --noise: must be a number of millimetres >= 0, got 'inf'{SEE['map']}",
+    ),
+    "share": (
+        "map --spurious 1.5",
+        f"primkit map: argument --spurious: must be a share from 0 to 1, got '1.5'{SEE['map']}",
+    ),
+    "file and number": (
+        "map --map maps/one.geojson --shapes 2 --style free",
+        "primkit: a board is either a file or random: leave out --map or --shapes and --style",
+    ),
+    "no such file": ("map --map nowhere.geojson", "primkit: nowhere.geojson: there is no such file in {here}"),
+    "no map": (
+        "map --map maps/notes.txt",
+        "primkit: notes.txt: the name of a map must end in .geojson or .json, got .txt",
+    ),
+    "damaged map": (
+        "map --map bad.geojson",
+        "primkit: bad.geojson: must be GeoJSON, got an empty file",
+    ),
+    "out is a file": (
+        "map --out maps/notes.txt",
+        "primkit: {notes} must be a folder, got a file or a folder below a file",
+    ),
+    "study's out is a file": (
+        "study --maps maps --out maps/notes.txt",
+        "primkit: {notes} must be a folder, got a file or a folder below a file",
+    ),
+    "no jobs": (
+        "study --jobs 0",
+        f"primkit study: argument --jobs: must be a whole number >= 1, got '0'{SEE['study']}",
+    ),
+    "a folder without maps": ("study --maps empty", "primkit: empty: must hold maps (.geojson or .json), got none"),
+    "no such folder": (
+        "study --maps nowhere",
+        "primkit: nowhere: the name of a map must end in .geojson or .json, got no ending",
+    ),
+    "two maps of one name": (
+        "study --maps maps maps/one.geojson",
+        "primkit: maps must have different names, got 3 files with 2 names",
+    ),
+    "a journal of something else": (
+        "study --maps maps --out other",
+        "primkit: journal.jsonl, line 1: must be a row of a study, got b'text\\n'",
+    ),
+    "kinds": (
+        "make-map --kinds circle star",
+        "primkit: a kind must be one of circle, triangle, rectangle, pentagon, got 'star'",
+    ),
+    "kinds and number": (
+        "make-map --shapes 3 --kinds circle",
+        "primkit: kinds must name one kind for each of the 3 shapes, got 1",
+    ),
+    "no room": (
+        "make-map --gap 900",
+        "primkit: no room found for 4 shapes with a gap of 0.9 m on a board of 1 m: "
+        "ask for fewer shapes, a smaller gap or a larger board",
+    ),
+    "map's ending": (
+        "make-map --out map.png",
+        "primkit: map.png: the name of a map must end in .geojson or .json, got .png",
+    ),
+    "map's folder": ("make-map --out no/map.geojson", "primkit: map.geojson: there is no folder {no}"),
+}
+
+
+@pytest.mark.parametrize(("words", "sentence"), REFUSED.values(), ids=REFUSED)
+@pytest.mark.usefixtures("maps")
+def test_one_sentence_and_exit_code_2(here, words, sentence, capsys):
+    (here / "bad.geojson").write_text("")
+    (here / "empty").mkdir()
+    (here / "other").mkdir()
+    (here / "other" / JOURNAL).write_bytes(b"text\n")
+    assert main(words.split()) == 2
+    out, err = capsys.readouterr()
+    assert err == sentence.format(here=here, notes=Path("maps/notes.txt"), no=here / "no") + "\n"
+    assert "Traceback" not in out
+
+
+@pytest.mark.parametrize("words", ["maps", "map --shape 3", "map 4", "study --maps"], ids=str)
+def test_words_that_argparse_refuses_are_one_line_too(words, capsys):
+    assert main(words.split()) == 2
+    out, err = capsys.readouterr()
+    assert re.fullmatch(r"primkit( map| study)?: .* \(see primkit( map| study)? --help\)\n", err)
+    assert out == ""
+
+
+@pytest.mark.parametrize("words", [["map"], ["study"]], ids=["map", "study"])
+def test_a_folder_without_permission(words, monkeypatch, capsys):
+    def forbidden(*_, **__):
+        raise PermissionError(errno.EACCES, "Permission denied")
+
+    monkeypatch.setattr(Path, "mkdir", forbidden)
+    assert main([*words, "--out", "locked"]) == 2
+    assert capsys.readouterr().err == "primkit: locked: the folder cannot be made: Permission denied\n"
+
+
+@pytest.mark.usefixtures("maps")
+def test_a_journal_without_permission(capsys):
+    Path("out", JOURNAL).mkdir(parents=True)  # no file can be opened there, not even by root
+    assert main(["study", "--maps", "maps", "--jobs", "1"]) == 2
+    err = capsys.readouterr().err
+    assert err.startswith(f"primkit: {Path('out', JOURNAL)}: ")
+    assert err.count("\n") == 1
+
+
+@pytest.mark.usefixtures("maps")
+def test_an_error_in_a_study_names_the_map(monkeypatch, capsys):
+    def broken(*_, **__):
+        raise ValueError("the points must be round")
+
+    monkeypatch.setattr(primkit.study.experiment, "find_shapes", broken)
+    primkit.study.experiment._warm_up.cache_clear()
+    assert main(["study", "--maps", "maps", "--jobs", "1"]) == 2
+    told = "primkit: the points must be round (on the map 'one' with the settings 'PAPER')\n"
+    assert capsys.readouterr().err == told
+
+
+def test_ctrl_c_is_130_and_a_sentence(monkeypatch, capsys):
+    def stop(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(primkit.study, "run", stop)
+    assert main(["map"]) == 130
+    assert capsys.readouterr().err == "primkit: stopped by Ctrl-C\n"
+
+
+# --- consoles -----------------------------------------------------------------------------------------------
+
+
+def test_a_console_that_lacks_a_sign_gets_it_spelled_out(tmp_path):
+    save_world(World(), tmp_path / "地図.geojson")
+    environment = os.environ | {"PYTHONIOENCODING": "cp1252", "PYTHONUTF8": "0"}
+    done = fresh("map", "--map", tmp_path / "地図.geojson", "--out", tmp_path / "out", env=environment)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert b"\\u5730\\u56f3.geojson" in done.stdout
+    missing = fresh("map", "--map", tmp_path / "図.geojson", env=environment)
+    assert missing.returncode == 2
+    assert missing.stderr.startswith(b"primkit: \\u56f3.geojson: there is no such file in")
+
+
+@posix
+@pytest.mark.parametrize("words", [["--help"], ["map", "--shapes", "0"]], ids=["help", "map"])
+def test_a_reader_that_has_gone_is_no_error(tmp_path, words):
+    read, write = os.pipe()
+    os.close(read)
+    more = ["--out", tmp_path] if "map" in words else []
+    done = subprocess.run(
+        command(*words, *more), stdout=write, stderr=subprocess.PIPE, cwd=ROOT, check=False, timeout=60
+    )
+    os.close(write)
+    assert (done.returncode, done.stderr) == (0, b"")
