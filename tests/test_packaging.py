@@ -1,0 +1,99 @@
+"""The frame: environment.txt, pyproject.toml, CITATION.cff and the commands in README.md say the same."""
+
+import importlib.util
+import re
+import tomllib
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+ROOT = Path(__file__).resolve().parent.parent
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+
+def environment() -> list[str]:
+    lines = (ROOT / "environment.txt").read_text(encoding="utf-8").splitlines()
+    return [line for line in (re.sub(r"(^|\s)#.*", "", line).strip() for line in lines) if line]
+
+
+def pins() -> dict[str, str]:
+    exact = (Requirement(line) for line in environment() if line != "-e .")
+    return {canonicalize_name(pin.name): str(pin.specifier).removeprefix("==") for pin in exact}
+
+
+def test_environment_installs_primkit_itself() -> None:
+    assert environment().count("-e .") == 1
+
+
+@pytest.mark.parametrize("line", [line for line in environment() if line != "-e ."])
+def test_environment_pins_exactly(line: str) -> None:
+    assert re.fullmatch(r"[\w.-]+(\[[\w,]+\])?==\d+(\.\d+)*", line)
+
+
+@pytest.mark.parametrize("needed", PROJECT["dependencies"] + PROJECT["optional-dependencies"]["test"])
+def test_environment_pins_what_the_project_needs(needed: str) -> None:
+    requirement = Requirement(needed)
+    assert requirement.specifier.contains(pins()[canonicalize_name(requirement.name)])
+
+
+def test_citation_has_the_project_s_version_and_licence() -> None:
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8").splitlines()
+    assert f"version: {PROJECT['version']}" in citation
+    assert f"license: {PROJECT['license']}" in citation
+
+
+def test_library_has_the_project_s_version() -> None:
+    contents = (ROOT / "primkit" / "__init__.py").read_text(encoding="utf-8").splitlines()
+    assert f'__version__ = "{PROJECT["version"]}"' in contents
+
+
+@pytest.fixture(scope="module")
+def readme_block() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("readme_block", ROOT / ".ci" / "readme_block.py")
+    assert spec
+    assert spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("name", ["tests", "tests on Windows"])
+def test_readme_gives_the_commands(readme_block: ModuleType, name: str) -> None:
+    commands = readme_block.block((ROOT / "README.md").read_text(encoding="utf-8"), name)
+    assert "-m pytest" in commands.splitlines()[-1]
+
+
+MARKED = "<!-- ci: tests -->\n```bash\nmake && test\n```\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (MARKED, "make && test\n"),
+        (f"# Title\n\n{MARKED}\nmore\n```\nother\n```\n", "make && test\n"),
+        (f"<!-- ci: tests on Windows -->\n```\nother\n```\n{MARKED}", "make && test\n"),
+        (MARKED.replace("-->\n", "-->\n\n"), "make && test\n"),
+        (MARKED.replace("&& ", "\n"), "make \ntest\n"),
+    ],
+    ids=["alone", "among others", "beside another marker", "an empty line between", "two lines"],
+)
+def test_block_after_a_marker_is_found(readme_block: ModuleType, text: str, expected: str) -> None:
+    assert readme_block.block(text, "tests") == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "must hold the marker <!-- ci: tests --> once, found 0"),
+        (MARKED * 2, "must hold the marker <!-- ci: tests --> once, found 2"),
+        ("<!-- ci: tests -->\nwords\n```\nother\n```\n", "a fenced block with commands must follow"),
+        ("<!-- ci: tests -->\n```\n```\n", "a fenced block with commands must follow"),
+    ],
+    ids=["no marker", "twice", "words between", "empty"],
+)
+def test_block_after_a_marker_failure(readme_block: ModuleType, text: str, message: str) -> None:
+    with pytest.raises(SystemExit, match=message):
+        readme_block.block(text, "tests")
