@@ -76,18 +76,18 @@ def certainty(figure: Circle | Outlines, points: Floats, spread: float, *, squar
         return _of_circle(figure, points)
     seen = sides_seen(figure, points, spread)
     covariance = _of_sides(figure, points, spread, square)
-    center, dimension = _derivatives(figure, square)
-    k = figure.angles.shape[1]
-    needed = np.eye(k, dtype=bool) | np.eye(k, k=1, dtype=bool) | np.eye(k, k=-1, dtype=bool)
-    needed[0, -1] = needed[-1, 0] = True  # a side's length hangs on itself and on both neighbours
-    measured = np.array([seen[row].all() for row in needed])
+    center, dimension = _derivatives(figure)
+    measured = _measured(figure, seen, square)
+    return Certainty(_std(center, covariance, np.full(2, seen.all())), _std(dimension, covariance, measured))
+
+
+def _measured(figure: Outlines, seen: NDArray[np.bool_], square: bool) -> NDArray[np.bool_]:
+    """Tell which dimensions hang on seen sides only, shape (D,)."""
     if square:  # width and height each hang on the two sides across
-        across = np.array([seen[1] and seen[3], seen[0] and seen[2]])
-        measured = across[_by_width(figure)]
-    return Certainty(
-        _std(center, covariance, np.full(2, seen.all())),
-        _std(dimension, covariance, measured),
-    )
+        return np.array([seen[1] and seen[3], seen[0] and seen[2]])[_by_width(figure)]
+    if len(seen) == 4:  # without right angles, both hang on all
+        return np.full(2, seen.all())
+    return np.roll(seen, 1) & seen & np.roll(seen, -1)  # a side ends where its neighbours' lines cross it
 
 
 def sides_seen(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bool_]:
@@ -155,17 +155,18 @@ def _cell_variance(angles: Floats, lengths: Floats, mass: Floats, noise: float) 
     return shaken * together + (1 - shaken) * CELL_STD**2 / mass
 
 
-def _derivatives(figure: Outlines, square: bool) -> tuple[Floats, Floats]:
+def _derivatives(figure: Outlines) -> tuple[Floats, Floats]:
     """Return how centroid, shape (2, 2 K), and dimensions, shape (D, 2 K), change with angles and offsets."""
     k = figure.angles.shape[1]
     steps = STEP * np.vstack([np.eye(2 * k), -np.eye(2 * k)])
     moved = Outlines(figure.angles + steps[:, :k], figure.offsets + steps[:, k:])
     begin, end = moved.spans()
     sides = end - begin
-    if square:
+    if k == 4:
         sides = ((sides[:, :2] + sides[:, 2:]) / 2)[:, _by_width(figure)]
     center = _centroids(moved.corners())
-    return tuple((v[: 2 * k] - v[2 * k :]).T / (2 * STEP) for v in (center, sides))  # type: ignore[return-value]
+    there, back = slice(None, 2 * k), slice(2 * k, None)
+    return (center[there] - center[back]).T / (2 * STEP), (sides[there] - sides[back]).T / (2 * STEP)
 
 
 def _by_width(figure: Outlines) -> NDArray[np.intp]:

@@ -71,6 +71,17 @@ def test_every_dimension_is_measured_when_all_was_seen():
         assert all(measure_shape(shape.outline(250), 0.0, rng=0).measured)
 
 
+def test_every_dimension_has_a_deviation_whatever_was_seen():
+    """Also four sides without right angles, which have two dimensions as a rectangle has."""
+    kite = pk.Polygon([(0, 0), (0.2, 0.03), (0.22, 0.2), (0.05, 0.14)])
+    for shape in (*SHAPES.values(), kite):
+        points = shape.outline(250)
+        for share in (1.0, 0.8, 0.6):
+            found = measure_shape(points[: int(share * 250)], 0.0, rng=0)
+            if found is not None:
+                assert len(found.dimension_std) == len(found.measured) == len(found.shape.dimensions)
+
+
 def test_a_line_over_a_hidden_side_is_not_seen():
     """It touches the last points of both neighbours, which lie near its corners."""
     outline, points = outline_of(PENTAGON), PENTAGON.outline(300)
