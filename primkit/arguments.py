@@ -17,6 +17,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+# 0.305 - 0.3 is a little more than 0.005: a value this much [m] beyond a limit that is included lies on it.
+ROUNDING = 1e-12
+
 
 def as_points(points: ArrayLike | Iterable[Any], name: str = "points") -> NDArray[np.float64]:
     """Return points as an (N, 2) array of finite floats, or say in one sentence what is wrong.
@@ -41,8 +44,8 @@ def as_points(points: ArrayLike | Iterable[Any], name: str = "points") -> NDArra
     (0, 2)
     """
     try:
-        array = np.asarray(points, dtype=float)
-    except (TypeError, ValueError):
+        array = _as_floats(points)
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name} must be numbers in an array of shape (N, 2), got {short(points)}") from None
     if array.size == 0 and array.ndim <= 2:
         return np.empty((0, 2))
@@ -55,6 +58,21 @@ def as_points(points: ArrayLike | Iterable[Any], name: str = "points") -> NDArra
     return array
 
 
+def as_point(point: ArrayLike, name: str) -> NDArray[np.float64]:
+    """Return one point as an array of two finite floats, or say in one sentence what is wrong.
+
+    >>> as_point((1, 2), "center")
+    array([1., 2.])
+    """
+    try:
+        points = as_points([point], name)
+    except ValueError:
+        points = np.empty((0, 2))
+    if len(points) != 1:
+        raise ValueError(f"{name} must be two finite numbers (x, y), got {short(point)}")
+    return points[0]
+
+
 def as_positive(value: Any, name: str, *, zero: bool = False) -> float:
     """Return a finite float above zero (or from zero up), or say in one sentence what is wrong.
 
@@ -63,6 +81,8 @@ def as_positive(value: Any, name: str, *, zero: bool = False) -> float:
     """
     rule = "a finite number >= 0" if zero else "a finite number > 0"
     try:
+        if isinstance(value, (str, bytes, bool, np.bool_)):
+            raise TypeError  # float() would take "0.1" and True
         number = float(value)
     except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name} must be {rule}, got {short(value)}") from None
@@ -90,8 +110,8 @@ def as_poses(poses: ArrayLike) -> NDArray[np.float64]:
     (1, 3)
     """
     try:
-        array = np.asarray(poses, dtype=float)
-    except (TypeError, ValueError):
+        array = _as_floats(poses)
+    except (TypeError, ValueError, OverflowError):
         raise ValueError("poses must be numbers in an array of shape (P, 3): x, y, heading") from None
     array = array.reshape(-1, 3) if array.size == 0 or array.shape == (3,) else array
     if array.ndim != 2 or array.shape[1] != 3:
@@ -101,6 +121,14 @@ def as_poses(poses: ArrayLike) -> NDArray[np.float64]:
         row = int(np.argmin(finite))
         raise ValueError(f"poses must be finite, got {tuple(array[row].tolist())} in row {row}")
     return array
+
+
+def _as_floats(values: Any) -> NDArray[np.float64]:
+    """Return values as an array of floats; a TypeError, ValueError or OverflowError says that they are none."""
+    array = np.asarray(values)
+    if array.dtype.kind in "USc":
+        raise TypeError  # numpy would read "1.5" as a number, and drop the imaginary part of a complex one
+    return np.asarray(array, dtype=float)
 
 
 def short(value: Any) -> str:

@@ -29,7 +29,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from .arguments import as_positive
+from .arguments import ROUNDING, as_positive
 from .measure import Detection
 from .paper import published_values
 from .shapes import Circle, Polygon, Shape
@@ -240,6 +240,11 @@ def match(found: Sequence[Shape], true: Sequence[Shape], gate: float = GATE) -> 
 
     As many pairs as possible are made, each with its centres at most ``gate`` metres apart.
 
+    Raises
+    ------
+    ValueError
+        If the gate is not a finite number >= 0.
+
     Examples
     --------
     >>> a, b = Circle((0, 0), 0.1), Circle((0.05, 0), 0.1)
@@ -250,11 +255,12 @@ def match(found: Sequence[Shape], true: Sequence[Shape], gate: float = GATE) -> 
     """
     from scipy.optimize import linear_sum_assignment
 
+    gate = as_positive(gate, "gate", zero=True)
     if not found or not true:
         return []
     offset = np.array([f.centroid for f in found])[:, None] - np.array([t.centroid for t in true])
     distance = np.hypot(offset[..., 0], offset[..., 1])
-    allowed = distance <= gate
+    allowed = distance <= gate + ROUNDING
     # A pair that is not allowed costs more than all allowed pairs together: none of them is given up for it.
     cost = np.where(allowed, distance, (gate + 1) * (min(allowed.shape) + 1))
     rows, columns = linear_sum_assignment(cost)
@@ -312,7 +318,7 @@ def _n_dimensions(shape: Shape, protocol: Protocol = "fair") -> int:
 
 
 def _within(errors: Iterable[float], tolerance: float) -> tuple[bool, ...]:
-    return tuple(bool(abs(e) <= tolerance) for e in errors)
+    return tuple(bool(abs(e) <= tolerance + ROUNDING) for e in errors)
 
 
 def _share(right: Sequence[bool], wrong: int, nothing: float) -> float:
@@ -322,7 +328,7 @@ def _share(right: Sequence[bool], wrong: int, nothing: float) -> float:
 
 
 def _in_mm(errors: Iterable[float]) -> str:
-    return ", ".join(f"{1000 * e:+.2f}" for e in errors)
+    return ", ".join(f"{round(1000 * e, 2) + 0.0:+.2f}" for e in errors)  # + 0.0: no "-0.00"
 
 
 def _faults(m: Match) -> list[str]:

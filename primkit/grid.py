@@ -85,7 +85,8 @@ class Grid:
         >>> Grid(0.001).to_cells([(0.1, 0.1), (-0.0004, 0.29)]).tolist()
         [[100, 100], [-1, 290]]
         """
-        cells = np.floor(as_points(points) / self.resolution + ON_BORDER)
+        with np.errstate(over="ignore"):  # infinitely many cells away is refused below
+            cells = np.floor(as_points(points) / self.resolution + ON_BORDER)
         if len(cells) and np.abs(cells).max() >= HALF:
             reach, farthest = HALF * self.resolution, np.abs(as_points(points)).max()
             raise ValueError(f"points must lie within {reach:g} m of the origin, got one {farthest:g} m out")
@@ -99,7 +100,7 @@ class Grid:
         >>> Grid(0.001).to_points([(100, 100)]).tolist()
         [[0.1005, 0.1005]]
         """
-        return (np.asarray(cells, dtype=float).reshape(-1, 2) + 0.5) * self.resolution
+        return (as_points(cells, "cells") + 0.5) * self.resolution
 
     def __len__(self) -> int:
         return len(self._keys)

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import as_points
+from .arguments import as_count, as_points, as_positive
 from .ransac import Consensus, Model, run_ransac
 
 Floats = NDArray[np.float64]
@@ -133,6 +133,11 @@ def find_lines(
     rng : int or numpy.random.Generator, optional
         Seed or generator.
 
+    Raises
+    ------
+    ValueError
+        If points are not finite (N, 2), or another argument is out of its range.
+
     Notes
     -----
     Greedy: the first line takes every point near it, those of its neighbours around a corner included.
@@ -143,6 +148,9 @@ def find_lines(
     []
     """
     points, rng = as_points(points), np.random.default_rng(rng)
+    threshold, most = as_positive(threshold, "threshold", zero=True), as_count(most, "most", least=0)
+    if not 0 <= left_over <= 1:
+        raise ValueError(f"left_over must be between 0 and 1, got {left_over:g}")
     left = np.ones(len(points), dtype=bool)
     found: list[FoundLine] = []
     while len(found) < most and np.count_nonzero(left) > left_over * len(points):
@@ -175,19 +183,20 @@ def _from_samples(samples: Floats) -> Floats:
 
 def _residuals(params: Floats, points: Floats) -> Floats:
     """Return the distances of N points from T lines, shape (T, N)."""
-    normals = np.column_stack([np.cos(params[:, 0]), np.sin(params[:, 0])])
-    return np.abs(normals @ points.T - params[:, 1:])
+    angle, offset = params[:, :1], params[:, 1:]
+    # Not as a matrix product: its last bits depend on how many lines are asked for at once.
+    distance = np.cos(angle) * points[:, 0]
+    distance += np.sin(angle) * points[:, 1]
+    distance -= offset
+    return np.abs(distance, out=distance)
 
 
 def _fit(points: Floats) -> Floats:
     """Return the total least squares line, shape (2,); NaN when the points fix none."""
-    if len(points) < 2:
+    if len(points) < 2 or (points == points[0]).all():  # the mean of equal points may be off by rounding
         return np.full(2, np.nan)
     center = points.mean(axis=0)
-    _, spread, axes = np.linalg.svd(points - center, full_matrices=False)
-    if spread[0] == 0:
-        return np.full(2, np.nan)
-    normal = axes[1]
+    normal = np.linalg.svd(points - center, full_matrices=False)[2][1]
     return np.array([np.arctan2(normal[1], normal[0]), normal @ center])
 
 

@@ -19,6 +19,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .arguments import as_points
 from .circles import find_circle
 from .shapes import Circle, Kind, Polygon, Shape
 from .world import PENTAGON
@@ -63,8 +64,15 @@ def measure_as_published(
     -------
     Circle, Polygon or None
         None for fewer than three lines, or when the points have no extent.
+
+    Raises
+    ------
+    ValueError
+        If points are not finite (N, 2).
     """
-    kind = kind_by_lines(n_lines)
+    points, kind = as_points(points), kind_by_lines(n_lines)
+    if len(points) == 0:
+        return None
     low, high = points.min(axis=0), points.max(axis=0)
     width, height = high - low
     if kind is None or min(width, height) <= 0:

@@ -26,7 +26,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import as_count, as_points, as_positive
+from .arguments import ROUNDING, as_count, as_points, as_positive
 
 Floats = NDArray[np.float64]
 
@@ -110,7 +110,8 @@ def run_ransac(
     Raises
     ------
     ValueError
-        If points are not finite (N, 2), the threshold is negative, or there is not at least one trial.
+        If points are not finite (N, 2), the threshold is negative, there is not at least one trial, or the score
+        is unknown.
 
     Examples
     --------
@@ -122,6 +123,8 @@ def run_ransac(
     """
     points = as_points(points)
     threshold, trials = as_positive(threshold, "threshold", zero=True), as_count(trials, "trials")
+    if score not in ("count", "truncated"):
+        raise ValueError(f'score must be "count" or "truncated", got {score!r}')
     if len(points) < model.sample_size:
         return None
     samples = draw_samples(len(points), model.sample_size, trials, np.random.default_rng(rng))
@@ -132,7 +135,7 @@ def run_ransac(
 
     merit = _merits(points, model, candidates, threshold, score)
     best = candidates[np.argmax(merit)]
-    inliers = model.residuals(best[None], points)[0] <= threshold
+    inliers = _agree(model.residuals(best[None], points)[0], threshold)
     return _refitted(points, model, best, inliers, threshold) if refit else Consensus(best, inliers)
 
 
@@ -175,6 +178,11 @@ def trials_needed(inlier_share: float, sample_size: int, confidence: float = 0.9
     return max(1, int(np.ceil(np.log1p(-confidence) / np.log1p(-clean))))
 
 
+def _agree(residuals: Floats, threshold: float) -> NDArray[np.bool_]:
+    """Return which residuals are within the threshold, boundary included, also where rounding blurs it."""
+    return residuals <= threshold + ROUNDING
+
+
 def _merits(points: Floats, model: Model, candidates: Floats, threshold: float, score: str) -> Floats:
     """Return how good each candidate is, shape (T,); larger is better."""
     step = max(1, BLOCK // len(points))
@@ -182,7 +190,7 @@ def _merits(points: Floats, model: Model, candidates: Floats, threshold: float, 
     for start in range(0, len(candidates), step):
         residuals = model.residuals(candidates[start : start + step], points)
         if score == "count":
-            merits.append(np.count_nonzero(residuals <= threshold, axis=1).astype(float))
+            merits.append(np.count_nonzero(_agree(residuals, threshold), axis=1).astype(float))
         else:
             merits.append(-(np.minimum(residuals, threshold) ** 2).sum(axis=1))
     return np.concatenate(merits)
@@ -196,7 +204,7 @@ def _refitted(points: Floats, model: Model, best: Floats, inliers: NDArray[np.bo
         params = model.fit(points[inliers])
         if not np.isfinite(params).all():
             break
-        agreeing = model.residuals(params[None], points)[0] <= threshold
+        agreeing = _agree(model.residuals(params[None], points)[0], threshold)
         if np.count_nonzero(agreeing) < np.count_nonzero(inliers):
             break
         settled = np.array_equal(agreeing, inliers)

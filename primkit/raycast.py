@@ -24,7 +24,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import as_poses
+from .arguments import ROUNDING, as_poses
 from .shapes import Circle, Polygon
 from .world import World
 
@@ -62,7 +62,7 @@ def cast_rays(world: World, poses: ArrayLike, angles: ArrayLike, range_max: floa
     Raises
     ------
     ValueError
-        If poses are not (P, 3), or angles do not increase within one turn.
+        If poses are not (P, 3), angles do not increase within one turn, or range_max is not above zero.
 
     Examples
     --------
@@ -70,9 +70,11 @@ def cast_rays(world: World, poses: ArrayLike, angles: ArrayLike, range_max: floa
     [[inf]]
     """
     angles = np.asarray(angles, dtype=float)
-    steps = np.diff(angles) if angles.ndim == 1 else np.array([-1.0])
-    if not (np.isfinite(angles).all() and (steps > 0).all() and steps.sum() < 2 * np.pi):
+    steps = np.diff(angles) if angles.ndim == 1 and np.isfinite(angles).all() else np.array([-1.0])
+    if not ((steps > 0).all() and steps.sum() < 2 * np.pi):
         raise ValueError("angles must be finite and increase within one turn of 2 pi")
+    if not range_max > 0:
+        raise ValueError(f"range_max must be a number > 0, got {range_max:g}")
     return cast(world, as_poses(poses), angles, range_max)[0]
 
 
@@ -85,16 +87,18 @@ def cast(
     """
     ranges = np.empty((len(poses), len(angles)))
     inside = np.zeros(len(poses), dtype=bool)
-    scene, fan = _scene(world), _Fan(angles)
+    scene, fan, reach = _scene(world), _Fan(angles), range_max + ROUNDING
     for block in _blocks(len(poses), len(world.shapes)):
         here, table = poses[block], ranges[block]
         table[...] = 0.0
-        _cast_polygons(scene, here, fan, range_max, table, inside[block])
-        _cast_circles(scene, here, fan, range_max, table, inside[block])
+        _cast_polygons(scene, here, fan, reach, table, inside[block])
+        _cast_circles(scene, here, fan, reach, table, inside[block])
         table[inside[block]] = 0.0
         with np.errstate(divide="ignore"):
             np.divide(1.0, table, out=table)
-        table[(table > range_max) | (table < range_min)] = np.inf
+        out = (table > reach) | (table < range_min - ROUNDING)
+        np.clip(table, range_min, range_max, out=table)  # 1 / (1 / t) may pass a limit by the last bit
+        table[out] = np.inf
     return ranges, inside
 
 
@@ -198,7 +202,7 @@ def _cast_polygons(scene: _Scene, here: Floats, fan: _Fan, range_max: float, tab
 
     # 1. The sides that face the robot and have their line in range; a and b are their ends.
     dx, dy = next_x - x, next_y - y
-    facing = (cross < 0) & (cross * cross <= range_max**2 * (dx * dx + dy * dy))
+    facing = (cross < 0) & ((cross / range_max) ** 2 <= dx * dx + dy * dy)
     ax, ay, bx, by, dx, dy, area = (v[facing] for v in (x, y, next_x, next_y, dx, dy, cross))
     pose = pose[np.nonzero(facing)[0]]
 
@@ -207,10 +211,14 @@ def _cast_polygons(scene: _Scene, here: Floats, fan: _Fan, range_max: float, tab
     side, beam = fan.between(np.arctan2(by, bx), width)
 
     # 3. Where each beam crosses the line: t (u x d) = a x d = area, so 1/t = u x (d / area). A beam along the side
-    #    has u x d = 0 up to rounding: its hit is then the side's farther end.
-    least = 1 / np.sqrt(np.maximum(ax * ax + ay * ay, bx * bx + by * by))
+    #    has both at 0 up to rounding, and their quotient anywhere: the hit is held between the side's two ends,
+    #    or below the farther one where the side's nearest point lies between them.
+    a_square, b_square = ax * ax + ay * ay, bx * bx + by * by
+    least = 1 / np.sqrt(np.maximum(a_square, b_square))
+    abreast = (ax * dx + ay * dy < 0) & (bx * dx + by * dy > 0)
+    most = np.where(abreast, np.inf, 1 / np.sqrt(np.minimum(a_square, b_square)))
     closeness = fan.cos[beam] * (dy / area)[side] - fan.sin[beam] * (dx / area)[side]
-    fan.keep_nearest(table, pose[side], beam, np.maximum(closeness, least[side]))
+    fan.keep_nearest(table, pose[side], beam, np.clip(closeness, least[side], most[side]))
 
 
 def _cast_circles(scene: _Scene, here: Floats, fan: _Fan, range_max: float, table: Floats, inside: Bools) -> None:

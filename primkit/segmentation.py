@@ -17,12 +17,13 @@ Rousseeuw (1987); linking is DBSCAN, Ester, Kriegel, Sander and Xu (1996). All t
 
 from __future__ import annotations
 
+import warnings
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import as_count, as_points, as_positive
+from .arguments import ROUNDING, as_count, as_points, as_positive
 
 Floats = NDArray[np.float64]
 Labels = NDArray[np.int64]
@@ -80,11 +81,11 @@ def segment(
     return kmeans(points, count_by_silhouette(points, rng=rng) if n_shapes is None else n_shapes, rng=rng)
 
 
-def check_count(n_shapes: int, points: Floats) -> None:
+def check_count(n_shapes: int, points: Floats, name: str = "n_shapes") -> None:
     """Refuse to look for more shapes than there are different points."""
     different = len(np.unique(points, axis=0))
-    if as_count(n_shapes, "n_shapes", least=0) > different:
-        raise ValueError(f"n_shapes must be at most the number of different points, got {n_shapes} for {different}")
+    if as_count(n_shapes, name, least=0) > different:
+        raise ValueError(f"{name} must be at most the number of different points, got {n_shapes} for {different}")
 
 
 def kmeans(points: ArrayLike, k: int, *, rng: int | np.random.Generator | None = None) -> Labels:
@@ -93,7 +94,12 @@ def kmeans(points: ArrayLike, k: int, *, rng: int | np.random.Generator | None =
     Raises
     ------
     ValueError
-        If k is larger than the number of different points, or below one where there are points.
+        If k is below one or larger than the number of different points.
+
+    Notes
+    -----
+    Points closer than rounding can tell (a hundred-millionth of the extent) may be left in one group, though k
+    asked for two.
 
     Examples
     --------
@@ -101,11 +107,15 @@ def kmeans(points: ArrayLike, k: int, *, rng: int | np.random.Generator | None =
     [0, 0, 1]
     """
     from sklearn.cluster import KMeans
+    from sklearn.exceptions import ConvergenceWarning
 
     points = as_points(points)
-    check_count(as_count(k, "k"), points)
+    check_count(as_count(k, "k"), points, "k")
     seed = int(np.random.default_rng(rng).integers(2**31))
-    return _left_to_right(points, KMeans(k, n_init=STARTS, random_state=seed).fit_predict(points))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ConvergenceWarning)  # fewer groups than k: see the notes
+        labels = KMeans(k, n_init=STARTS, random_state=seed).fit_predict(points)
+    return _left_to_right(points, labels)
 
 
 def count_by_silhouette(
@@ -131,8 +141,9 @@ def count_by_silhouette(
     points, rng = as_points(points), np.random.default_rng(rng)
     different = len(np.unique(points, axis=0))
     best, best_score = min(1, different), 0.5
-    for k in range(2, min(most, different - 1) + 1):
-        score = silhouette_score(points, kmeans(points, k, rng=rng))
+    for k in range(2, min(as_count(most, "most"), different - 1) + 1):
+        labels = kmeans(points, k, rng=rng)
+        score = silhouette_score(points, labels) if labels.max() > 0 else 0.0
         if score > best_score:
             best, best_score = k, score
     return best
@@ -167,9 +178,11 @@ def link(points: ArrayLike, reach: float = LINK, neighbours: int = LINK_NEIGHBOU
     if len(points) == 0:
         return np.empty(0, dtype=np.int64)
     reach, neighbours = as_positive(reach, "reach"), as_count(neighbours, "neighbours")
-    labels = DBSCAN(eps=reach, min_samples=neighbours).fit_predict(points)
-    sizes = np.bincount(labels[labels >= 0], minlength=labels.max() + 1)
-    strays = (labels < 0) | (sizes[labels] < LEAST_GROUP)
+    order = np.lexsort((points[:, 1], points[:, 0]))  # a lone point between two groups goes to the first one met
+    labels = np.empty(len(points), dtype=np.int64)
+    labels[order] = DBSCAN(eps=reach + ROUNDING, min_samples=neighbours).fit_predict(points[order])
+    sizes = np.bincount(labels + 1)  # strays, of label -1, stand first
+    strays = (labels < 0) | (sizes[labels + 1] < LEAST_GROUP)
     return _left_to_right(points, np.where(strays, -1, labels))
 
 
@@ -177,6 +190,7 @@ def _left_to_right(points: Floats, labels: NDArray[np.integer]) -> Labels:
     """Return the same groups numbered by the x (then y) of their means, so that numbers mean the same in any order."""
     groups = np.unique(labels[labels >= 0])
     means = np.array([points[labels == g].mean(axis=0) for g in groups]).reshape(-1, 2)
+    means = means.round(9)  # to a nanometre: one above the other stays so, whatever the order of summing
     numbered = np.full(len(labels), -1, dtype=np.int64)
     for number, g in enumerate(np.lexsort((means[:, 1], means[:, 0]))):
         numbered[labels == groups[g]] = number

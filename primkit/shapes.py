@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import as_count, as_points, as_positive, short
+from .arguments import as_count, as_point, as_points, as_positive
 
 if TYPE_CHECKING:
     import shapely
@@ -74,13 +74,7 @@ class Circle:
     radius: float
 
     def __init__(self, center: ArrayLike, radius: float) -> None:
-        try:
-            middle = as_points([center], "center")
-        except ValueError:
-            middle = np.empty((0, 2))
-        if len(middle) != 1:
-            raise ValueError(f"center must be two finite numbers (x, y), got {short(center)}")
-        object.__setattr__(self, "center", _frozen(middle[0]))
+        object.__setattr__(self, "center", _frozen(as_point(center, "center")))
         object.__setattr__(self, "radius", as_positive(radius, "radius"))
 
     @property
@@ -124,7 +118,7 @@ class Circle:
 
     def moved(self, offset: ArrayLike = (0.0, 0.0), angle: float = 0.0) -> Circle:
         """Return the circle shifted by ``offset`` metres (turning a circle changes nothing)."""
-        return Circle(self.center + np.asarray(offset, dtype=float), self.radius)
+        return Circle(self.center + as_point(offset, "offset"), self.radius)
 
     def to_shapely(self, quad_segs: int = 64) -> shapely.Polygon:
         """Return a shapely polygon with 4 x ``quad_segs`` corners on the circle."""
@@ -260,7 +254,7 @@ class Polygon:
         c, s = np.cos(angle), np.sin(angle)
         middle = self.centroid
         turned = (self.vertices - middle) @ np.array([[c, s], [-s, c]])
-        return Polygon(turned + middle + np.asarray(offset, dtype=float))
+        return Polygon(turned + middle + as_point(offset, "offset"))
 
     def to_shapely(self) -> shapely.Polygon:
         """Return the shapely polygon with the same corners."""
@@ -275,7 +269,7 @@ class Polygon:
         return np.array_equal(self.vertices, other.vertices)
 
     def __hash__(self) -> int:
-        return hash(self.vertices.tobytes())
+        return hash(tuple(self.vertices.ravel().tolist()))  # not of the bytes: -0.0 equals 0.0
 
     def __repr__(self) -> str:
         return f"Polygon([{', '.join(map(_pair, self.vertices))}])"
@@ -285,14 +279,13 @@ Shape = Circle | Polygon
 
 
 def _without_repeats(corners: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Drop each corner that repeats the one before it, the first one included (a closed ring)."""
+    """Drop each corner that repeats the one before it, and the last one if it repeats the first (a closed ring)."""
     if len(corners) == 0:
         return corners
-    step = np.hypot(*(corners - np.roll(corners, 1, axis=0)).T)
-    keep = step > SAME_CORNER
-    if len(corners) > 1 and not keep[0]:  # a closed ring repeats its first corner at the end
-        keep[0], keep[-1] = True, False
-    return corners[keep]
+    step = np.hypot(*np.diff(corners, axis=0).T)
+    corners = corners[np.append(True, step > SAME_CORNER)]
+    closed = len(corners) > 1 and np.hypot(*(corners[-1] - corners[0])) <= SAME_CORNER
+    return corners[:-1] if closed else corners
 
 
 def _counter_clockwise(corners: NDArray[np.float64]) -> NDArray[np.float64]:

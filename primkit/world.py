@@ -23,7 +23,7 @@ from typing import Literal
 
 import numpy as np
 
-from .arguments import as_count, as_positive
+from .arguments import as_count, as_positive, short
 from .shapes import KINDS, Circle, Kind, Polygon, Shape
 
 # The paper's maps: one shape in each quadrant, near the quadrant's centre.
@@ -70,7 +70,10 @@ class World:
     size: float = 1.0
 
     def __init__(self, shapes: Iterable[Shape] = (), size: float = 1.0) -> None:
-        shapes = tuple(shapes)
+        try:
+            shapes = tuple(shapes)
+        except TypeError:
+            raise ValueError(f"a world's shapes must be a list of Circle and Polygon, got {short(shapes)}") from None
         for shape in shapes:
             if not isinstance(shape, (Circle, Polygon)):
                 raise ValueError(f"a world's shapes must be Circle or Polygon, got {type(shape).__name__}")
@@ -211,7 +214,8 @@ def _fits(shape: Shape, placed: Sequence[Shape], gap: float, limit: float) -> bo
         extent = np.abs(shape.center) + shape.radius
     else:
         extent = np.abs(shape.vertices).max(axis=0)
-    return bool((extent <= limit).all()) and all(gap_between(shape, other) >= gap for other in placed)
+    gaps = (gap_between(shape, other) for other in placed)
+    return bool((extent <= limit).all()) and all(g >= gap and g > 0 for g in gaps)  # polygons that overlap are 0 apart
 
 
 def paper_shape(kind: Kind, center: np.ndarray, rng: np.random.Generator) -> Shape:

@@ -21,7 +21,12 @@ def told(world, poses, lidar, rng, resolution=0.001):
     grid = pk.Grid(resolution)
     grid.add(scans)
     true_hit = (exact >= lidar.range_min) & (exact <= lidar.range_max)
-    at = pk.Scans(scans.poses, scans.angles, np.where(scans.hits & true_hit, exact, np.where(scans.hits, 0.0, np.inf)), scans.inside)
+    at = pk.Scans(
+        scans.poses,
+        scans.angles,
+        np.where(scans.hits & true_hit, exact, np.where(scans.hits, 0.0, np.inf)),
+        scans.inside,
+    )
     owners = _owners(world, at.points())
     real = (scans.hits & true_hit)[scans.hits]
     ghost = real & (np.abs(scans.ranges - np.where(true_hit, exact, 0.0))[scans.hits] > 6 * lidar.noise_std + 1e-9)

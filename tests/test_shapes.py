@@ -1,0 +1,670 @@
+"""The shapes, against hand computation and against shapely; and what is refused before there is a shape."""
+
+import copy
+import dataclasses
+import math
+import pickle
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from primkit.arguments import as_count, as_point, as_points, as_poses, as_positive, short
+from primkit.shapes import KINDS, Circle, Polygon
+from tests.helpers import exactly
+
+NAN, INF = float("nan"), float("inf")
+HUGE = 10**400  # a whole number that no float can hold
+
+SQUARE = [(0, 0), (0.2, 0), (0.2, 0.2), (0, 0.2)]
+RIGHT = [(0, 0), (3, 0), (0, 4)]  # sides 3, 5, 4
+HOUSE = [(0, 0), (4, 0), (4, 3), (2, 5), (0, 3)]  # walls of 12 about y = 3/2, a roof of 4 about y = 11/3
+# The five points of a star, every other one: it bends one way only, but turns round twice.
+PENTAGRAM = [(math.cos(0.8 * math.pi * i), math.sin(0.8 * math.pi * i)) for i in range(5)]
+
+
+# --- Shapes for hypothesis: any polygon with its corners on an ellipse is convex ----------------------------------
+
+coordinates = st.floats(-2, 2)
+offsets = st.tuples(coordinates, coordinates)
+angles = st.floats(-7, 7)
+circles = st.builds(Circle, offsets, st.floats(1e-3, 1))
+
+
+@st.composite
+def polygons(draw):
+    n = draw(st.integers(3, 5))
+    gaps = np.array(draw(st.lists(st.floats(0.2, 1), min_size=n, max_size=n)))
+    bearings = draw(angles) + 2 * np.pi * np.cumsum(gaps) / gaps.sum()
+    width, height = draw(st.floats(0.02, 1)), draw(st.floats(0.02, 1))
+    corners = np.column_stack([width * np.cos(bearings), height * np.sin(bearings)])
+    return Polygon(corners + draw(offsets))
+
+
+shapes = st.one_of(circles, polygons())
+clouds = st.lists(st.tuples(st.floats(-4, 4), st.floats(-4, 4)), min_size=1, max_size=20).map(np.array)
+
+
+def turned(points, angle, about=(0.0, 0.0)):
+    """Points turned counter-clockwise, one by one, by complex numbers."""
+    middle = complex(*about)
+    z = [middle + (complex(*p) - middle) * complex(math.cos(angle), math.sin(angle)) for p in points]
+    return np.array([(v.real, v.imag) for v in z])
+
+
+# --- Circle -------------------------------------------------------------------------------------------------
+
+
+def test_circle_by_hand():
+    circle = Circle((1, -2), 3)
+    assert (circle.kind, circle.dimensions, circle.radius, circle.reach) == ("circle", (3.0,), 3.0, 3.0)
+    assert circle.center.tolist() == circle.centroid.tolist() == [1.0, -2.0]
+    assert circle.area == pytest.approx(28.274333882308138)
+    assert circle.perimeter == pytest.approx(18.84955592153876)
+    np.testing.assert_allclose(circle.outline(4), [(4, -2), (1, 1), (-2, -2), (1, -5)], atol=1e-15)
+
+
+CIRCLE_DISTANCES = {
+    "at the centre": ((1, 1), -0.5),
+    "inside": ((1.25, 1), -0.25),
+    "on the outline": ((1.5, 1), 0.0),
+    "on the outline, 3-4-5": ((1.3, 1.4), 0.0),
+    "outside": ((1, 3), 1.5),
+    "outside, 3-4-5": ((4, 5), 4.5),
+}
+
+
+@pytest.mark.parametrize(("point", "distance"), CIRCLE_DISTANCES.values(), ids=CIRCLE_DISTANCES)
+def test_circle_signed_distance(point, distance):
+    assert Circle((1, 1), 0.5).signed_distance([point]).tolist() == pytest.approx([distance], abs=1e-15)
+
+
+CIRCLE_FAILURES = {
+    "radius zero": ((0, 0), 0, "radius must be a finite number > 0, got 0"),
+    "radius negative": ((0, 0), -0.1, "radius must be a finite number > 0, got -0.1"),
+    "radius NaN": ((0, 0), NAN, "radius must be a finite number > 0, got nan"),
+    "radius infinite": ((0, 0), INF, "radius must be a finite number > 0, got inf"),
+    "radius None": ((0, 0), None, "radius must be a finite number > 0, got None"),
+    "radius is text": ((0, 0), "0.1", "radius must be a finite number > 0, got '0.1'"),
+    "radius is bytes": ((0, 0), b"1", "radius must be a finite number > 0, got b'1'"),
+    "radius is a truth value": ((0, 0), True, "radius must be a finite number > 0, got True"),
+    "radius is numpy's truth value": ((0, 0), np.True_, "radius must be a finite number > 0, got np.True_"),
+    "radius in a tuple": ((0, 0), (0.1,), "radius must be a finite number > 0, got (0.1,)"),
+    "radius complex": ((0, 0), 1j, "radius must be a finite number > 0, got 1j"),
+    "centre NaN": ((0, NAN), 1, "center must be two finite numbers (x, y), got (0, nan)"),
+    "centre infinite": ((-INF, 0), 1, "center must be two finite numbers (x, y), got (-inf, 0)"),
+    "centre with three numbers": ((0, 0, 0), 1, "center must be two finite numbers (x, y), got (0, 0, 0)"),
+    "centre with one number": ((0,), 1, "center must be two finite numbers (x, y), got (0,)"),
+    "centre a number": (5, 1, "center must be two finite numbers (x, y), got 5"),
+    "centre a row of points": ([(0, 0)], 1, "center must be two finite numbers (x, y), got [(0, 0)]"),
+    "centre empty": ((), 1, "center must be two finite numbers (x, y), got ()"),
+    "centre None": (None, 1, "center must be two finite numbers (x, y), got None"),
+    "centre is text": ("ab", 1, "center must be two finite numbers (x, y), got 'ab'"),
+    "centre of texts": (("1", "2"), 1, "center must be two finite numbers (x, y), got ('1', '2')"),
+}
+
+
+@pytest.mark.parametrize(("center", "radius", "sentence"), CIRCLE_FAILURES.values(), ids=CIRCLE_FAILURES)
+def test_circle_failure(center, radius, sentence):
+    with pytest.raises(ValueError, match=exactly(sentence)):
+        Circle(center, radius)
+
+
+@given(circles)
+def test_circle_against_shapely(circle):
+    """The shapely polygon has its 4 x quad_segs corners on the circle, so its area and length are known exactly."""
+    n = 4 * 16
+    ring = circle.to_shapely(quad_segs=16)
+    assert len(ring.exterior.coords) == n + 1
+    assert ring.area == pytest.approx(circle.area * math.sin(2 * math.pi / n) / (2 * math.pi / n), rel=1e-9)
+    assert ring.length == pytest.approx(circle.perimeter * math.sin(math.pi / n) / (math.pi / n), rel=1e-9)
+    assert (ring.centroid.x, ring.centroid.y) == pytest.approx(tuple(circle.centroid), abs=1e-9)
+
+
+def test_circle_to_shapely_has_256_corners_unless_told_otherwise():
+    assert len(Circle((0, 0), 1).to_shapely().exterior.coords) == 256 + 1
+
+
+# --- Polygon ------------------------------------------------------------------------------------------------
+
+POLYGONS = {  # corners, kind, dimensions, area, perimeter, centroid
+    "square": (SQUARE, "rectangle", (0.2, 0.2), 0.04, 0.8, (0.1, 0.1)),
+    "flat rectangle": ([(0, 0), (3, 0), (3, 1), (0, 1)], "rectangle", (3, 1), 3, 8, (1.5, 0.5)),
+    "tall rectangle: the width is the longer": (
+        [(0, 0), (1, 0), (1, 3), (0, 3)],
+        "rectangle",
+        (3, 1),
+        3,
+        8,
+        (0.5, 1.5),
+    ),
+    "trapezium: means of opposite sides": (
+        [(0, 0), (8, 0), (5, 4), (0, 4)],  # a rectangle of 20 about (2.5, 2) and a triangle of 6 about (6, 4/3)
+        *("rectangle", (6.5, 4.5), 26, 22, (43 / 13, 24 / 13)),
+    ),
+    "triangle 3-4-5": (RIGHT, "triangle", (3, 5, 4), 6, 12, (1, 4 / 3)),
+    "pentagon": (HOUSE, "pentagon", (4, 3, 8**0.5, 8**0.5, 3), 16, 10 + 32**0.5, (2, 49 / 24)),
+}
+
+
+@pytest.mark.parametrize(
+    ("corners", "kind", "dimensions", "area", "perimeter", "centroid"), POLYGONS.values(), ids=POLYGONS
+)
+def test_polygon_by_hand(corners, kind, dimensions, area, perimeter, centroid):
+    polygon = Polygon(corners)
+    assert polygon.vertices.tolist() == [list(map(float, c)) for c in corners]
+    assert polygon.kind == kind
+    assert polygon.dimensions == pytest.approx(dimensions)
+    assert polygon.area == pytest.approx(area)
+    assert polygon.perimeter == pytest.approx(perimeter)
+    assert polygon.centroid == pytest.approx(centroid)
+    assert polygon.reach == pytest.approx(max(math.dist(centroid, c) for c in corners))
+
+
+def test_sides_edges_and_normals_start_at_the_first_corner():
+    triangle = Polygon(RIGHT)
+    assert triangle.edges.tolist() == [[3, 0], [-3, 4], [0, -4]]
+    assert triangle.sides.tolist() == [3, 5, 4]
+    np.testing.assert_allclose(triangle.normals, [(0, -1), (0.8, 0.6), (-1, 0)], atol=1e-15)
+
+
+ORDERS = {  # what is given, what is kept
+    "counter-clockwise stays": (RIGHT, RIGHT),
+    "clockwise is turned round, the first stays first": ([(0, 0), (0, 4), (3, 0)], RIGHT),
+    "clockwise square": (SQUARE[::-1], [SQUARE[3], SQUARE[0], SQUARE[1], SQUARE[2]]),
+    "clockwise pentagon": (HOUSE[::-1], [HOUSE[4], *HOUSE[:4]]),
+    "closed ring": ([*RIGHT, RIGHT[0]], RIGHT),
+    "closed ring of five": ([*HOUSE, HOUSE[0]], HOUSE),
+    "closed clockwise ring": ([(0, 0), (0, 4), (3, 0), (0, 0)], RIGHT),
+    "closed twice": ([*RIGHT, RIGHT[0], RIGHT[0]], RIGHT),
+    "first corner doubled": ([RIGHT[0], *RIGHT], RIGHT),
+    "first corner doubled and closed twice": ([RIGHT[0], *RIGHT, RIGHT[0], RIGHT[0]], RIGHT),
+    "middle corner doubled": ([RIGHT[0], RIGHT[1], RIGHT[1], RIGHT[2]], RIGHT),
+    "last corner doubled": ([*RIGHT, RIGHT[2]], RIGHT),
+    "every corner three times": ([c for c in HOUSE for _ in range(3)], HOUSE),
+    "a corner within a nanometre is the same": ([*RIGHT, (0, 4 + 9e-10)], RIGHT),
+    "a ring that closes within a nanometre": ([*RIGHT, (9e-10, 0)], RIGHT),
+}
+
+
+@pytest.mark.parametrize(("given_corners", "kept"), ORDERS.values(), ids=ORDERS)
+def test_corners_are_put_right(given_corners, kept):
+    assert Polygon(given_corners).vertices.tolist() == [list(map(float, c)) for c in kept]
+
+
+def test_a_corner_two_nanometres_away_is_another_corner():
+    assert len(Polygon([(0, 0), (3, 0), (3, 2e-9), (0, 4)]).vertices) == 4
+
+
+POLYGON_FAILURES = {
+    "no corner": ([], "a polygon must have 3 to 5 different corners, got 0"),
+    "one corner": ([(1, 1)], "a polygon must have 3 to 5 different corners, got 1"),
+    "two corners": ([(0, 0), (1, 1)], "a polygon must have 3 to 5 different corners, got 2"),
+    "two corners, closed": ([(0, 0), (1, 1), (0, 0)], "a polygon must have 3 to 5 different corners, got 2"),
+    "one corner, many times": ([(1, 1)] * 4, "a polygon must have 3 to 5 different corners, got 1"),
+    "six corners": (
+        [(2, 0), (1, 2), (-1, 2), (-2, 0), (-1, -2), (1, -2)],
+        "a polygon must have 3 to 5 different corners, got 6",
+    ),
+    "on one line": (
+        [(0, 0), (1, 1), (2, 2)],
+        "a polygon's corners must not lie on one line, got (0, 0) between its neighbours",
+    ),
+    "on one vertical line": (
+        [(1, 0), (1, 2), (1, 1)],
+        "a polygon's corners must not lie on one line, got (1, 0) between its neighbours",
+    ),
+    "a corner in the middle of a side": (
+        [(0, 0), (1, 0), (2, 0), (2, 2)],
+        "a polygon's corners must not lie on one line, got (1, 0) between its neighbours",
+    ),
+    "a spike, there and back": (
+        [(0, 0), (4, 0), (2, 0), (2, 2)],
+        "a polygon's corners must not lie on one line, got (4, 0) between its neighbours",
+    ),
+    "nearly on one line": (
+        [(0, 0), (1, -1e-10), (2, 0), (2, 2)],
+        "a polygon's corners must not lie on one line, got (1, 0) between its neighbours",
+    ),
+    "bow-tie": (
+        [(0, 0), (1, 1), (1, 0), (0, 1)],
+        "a polygon must be convex and must not cross itself, got [(0, 0), (1, 1), (1, 0), (0, 1)]",
+    ),
+    "arrow head": (
+        [(0, 0), (2, 1), (0, 2), (1, 1)],
+        "a polygon must be convex and must not cross itself, got [(0, 0), (2, 1), (0, 2), (1, 1)]",
+    ),
+    "pentagram": (
+        PENTAGRAM,
+        "a polygon must be convex and must not cross itself, got [(1, 0), (-0.809017, 0.587785), "
+        "(0.309017, -0.951057), (0.309017, 0.951057), (-0.809017, -0.587785)]",
+    ),
+    "a star with one corner inside": (
+        [(0, 0), (4, 0), (4, 4), (2, 1), (0, 4)],
+        "a polygon must be convex and must not cross itself, got [(0, 0), (4, 0), (4, 4), (2, 1), (0, 4)]",
+    ),
+    "NaN": ([(0, 0), (1, NAN), (0, 1)], "vertices must be finite, got (1.0, nan) in row 1"),
+    "infinity": ([(0, 0), (1, 0), (-INF, 1)], "vertices must be finite, got (-inf, 1.0) in row 2"),
+    "three numbers each": ([(0, 0, 0)] * 3, "vertices must have shape (N, 2), got shape (3, 3)"),
+    "a flat list": ([0, 0, 1, 0, 0, 1], "vertices must have shape (N, 2), got shape (6,)"),
+    "two rings": ([SQUARE, SQUARE], "vertices must have shape (N, 2), got shape (2, 4, 2)"),
+    "text": ("square", "vertices must be numbers in an array of shape (N, 2), got 'square'"),
+    "None": (None, "vertices must have shape (N, 2), got shape ()"),
+    "a truth value": (True, "vertices must have shape (N, 2), got shape ()"),
+}
+
+
+@pytest.mark.parametrize(("corners", "sentence"), POLYGON_FAILURES.values(), ids=POLYGON_FAILURES)
+def test_polygon_failure(corners, sentence):
+    with pytest.raises(ValueError, match=exactly(sentence)):
+        Polygon(corners)
+
+
+POLYGON_DISTANCES = {  # from the rectangle [0, 4] x [0, 2]
+    "middle": ((2, 1), -1),
+    "near a side": ((3.5, 1), -0.5),
+    "on a side": ((4, 1), 0),
+    "on a corner": ((4, 2), 0),
+    "beside a side": ((5.5, 1), 1.5),
+    "off a corner, 3-4-5": ((7, 6), 5),
+    "off a corner, along a side's line": ((6, 2), 2),
+    "below": ((1, -3), 3),
+}
+
+
+@pytest.mark.parametrize(("point", "distance"), POLYGON_DISTANCES.values(), ids=POLYGON_DISTANCES)
+def test_polygon_signed_distance(point, distance):
+    rectangle = Polygon([(0, 0), (4, 0), (4, 2), (0, 2)])
+    assert rectangle.signed_distance([point]).tolist() == pytest.approx([distance], abs=1e-15)
+
+
+@given(polygons())
+def test_polygon_against_shapely(polygon):
+    other = polygon.to_shapely()
+    assert other.is_valid
+    assert other.exterior.is_ccw
+    assert polygon.area == pytest.approx(other.area, rel=1e-9)
+    assert polygon.perimeter == pytest.approx(other.length, rel=1e-12)
+    assert polygon.centroid == pytest.approx((other.centroid.x, other.centroid.y), abs=1e-9)
+    assert polygon.kind == KINDS[len(other.exterior.coords) - 3]
+    farthest = shapely.hausdorff_distance(shapely.Point(polygon.centroid), other.exterior)
+    assert polygon.reach == pytest.approx(farthest, rel=1e-12)
+
+
+@given(polygons(), clouds)
+def test_polygon_signed_distance_against_shapely(polygon, points):
+    other, places = polygon.to_shapely(), shapely.points(points)
+    away = shapely.distance(other.exterior, places)
+    expected = np.where(shapely.contains(other, places), -away, away)
+    np.testing.assert_allclose(polygon.signed_distance(points), expected, rtol=1e-12, atol=1e-12)
+
+
+@given(circles, clouds)
+def test_circle_signed_distance_against_shapely(circle, points):
+    expected = shapely.distance(shapely.Point(circle.center), shapely.points(points)) - circle.radius
+    np.testing.assert_allclose(circle.signed_distance(points), expected, rtol=1e-12, atol=1e-12)
+
+
+@given(polygons())
+def test_normals_are_unit_vectors_that_point_outwards(polygon):
+    np.testing.assert_allclose(np.linalg.norm(polygon.normals, axis=1), 1, rtol=1e-12)
+    middles = polygon.vertices + polygon.edges / 2
+    np.testing.assert_allclose(polygon.signed_distance(middles + 1e-3 * polygon.normals), 1e-3, rtol=1e-9)
+    np.testing.assert_allclose((polygon.normals * polygon.edges).sum(axis=1), 0, atol=1e-12)
+
+
+# --- Outline ------------------------------------------------------------------------------------------------
+
+
+@given(shapes, st.integers(1, 300))
+def test_outline_points_are_on_the_outline(shape, n):
+    points = shape.outline(n)
+    assert points.shape == (n, 2)
+    np.testing.assert_allclose(shape.signed_distance(points), 0, atol=1e-12)
+
+
+@given(polygons(), st.integers(1, 300))
+def test_polygon_outline_is_evenly_spaced(polygon, n):
+    ring = polygon.to_shapely().exterior
+    points = polygon.outline(n)
+    assert points[0].tolist() == polygon.vertices[0].tolist()
+    travelled = shapely.line_locate_point(ring, shapely.points(points[1:]))
+    np.testing.assert_allclose(travelled, np.arange(1, n) * ring.length / n, rtol=1e-9)
+
+
+@given(circles, st.integers(3, 300))
+def test_circle_outline_is_evenly_spaced_and_counter_clockwise(circle, n):
+    around = circle.outline(n) - circle.center
+    assert around[0] == pytest.approx((circle.radius, 0))
+    steps = np.angle([complex(*b) / complex(*a) for a, b in zip(around, np.roll(around, -1, axis=0), strict=True)])
+    np.testing.assert_allclose(steps, 2 * np.pi / n, rtol=1e-9)
+
+
+@pytest.mark.parametrize("shape", [Circle((0, 0), 1), Polygon(RIGHT)], ids=["circle", "polygon"])
+def test_outline_has_200_points_unless_told_otherwise(shape):
+    assert shape.outline().shape == (200, 2)
+
+
+OUTLINE_FAILURES = {
+    "none": (0, "n must be a whole number >= 1, got 0"),
+    "negative": (-3, "n must be a whole number >= 1, got -3"),
+    "a fraction": (2.5, "n must be a whole number >= 1, got 2.5"),
+    "a whole float": (4.0, "n must be a whole number >= 1, got 4.0"),
+    "a truth value": (True, "n must be a whole number >= 1, got True"),
+    "text": ("9", "n must be a whole number >= 1, got '9'"),
+    "None": (None, "n must be a whole number >= 1, got None"),
+}
+
+
+@pytest.mark.parametrize("shape", [Circle((0, 0), 1), Polygon(RIGHT)], ids=["circle", "polygon"])
+@pytest.mark.parametrize(("n", "sentence"), OUTLINE_FAILURES.values(), ids=OUTLINE_FAILURES)
+def test_outline_failure(shape, n, sentence):
+    with pytest.raises(ValueError, match=exactly(sentence)):
+        shape.outline(n)
+
+
+# --- Moving -------------------------------------------------------------------------------------------------
+
+
+def test_moved_turns_counter_clockwise_about_the_centroid():
+    rectangle = Polygon([(0, 0), (4, 0), (4, 2), (0, 2)])  # centroid (2, 1)
+    quarter = rectangle.moved(angle=np.pi / 2)
+    np.testing.assert_allclose(quarter.vertices, [(3, -1), (3, 3), (1, 3), (1, -1)], atol=1e-15)
+    shifted = rectangle.moved((10, -1))
+    np.testing.assert_allclose(shifted.vertices, [(10, -1), (14, -1), (14, 1), (10, 1)], atol=1e-15)
+    assert Circle((1, 2), 3).moved((10, -1), 0.7) == Circle((11, 1), 3)
+
+
+@given(shapes)
+def test_moved_by_nothing(shape):
+    moved = shape.moved()
+    assert moved.kind == shape.kind
+    np.testing.assert_allclose(moved.outline(30), shape.outline(30), atol=1e-12)
+
+
+@given(shapes, offsets, angles, clouds)
+def test_moved_leaves_what_a_shape_is(shape, offset, angle, points):
+    moved = shape.moved(offset, angle)
+    assert moved.kind == shape.kind
+    assert moved.dimensions == pytest.approx(shape.dimensions, rel=1e-9)
+    assert moved.area == pytest.approx(shape.area, rel=1e-9)
+    assert moved.perimeter == pytest.approx(shape.perimeter, rel=1e-9)
+    assert moved.reach == pytest.approx(shape.reach, rel=1e-9)
+    assert moved.centroid == pytest.approx(shape.centroid + offset, abs=1e-9)
+    there = turned(points, angle, shape.centroid) + offset
+    np.testing.assert_allclose(moved.signed_distance(there), shape.signed_distance(points), atol=1e-9)
+
+
+@given(polygons(), offsets, angles)
+def test_moved_there_and_back(polygon, offset, angle):
+    back = polygon.moved(offset, angle).moved(np.negative(offset), -angle)
+    np.testing.assert_allclose(back.vertices, polygon.vertices, atol=1e-12)
+
+
+@given(polygons(), st.integers(0, 4), st.booleans(), st.booleans())
+def test_order_and_first_corner_do_not_matter(polygon, first, clockwise, closed):
+    corners = np.roll(polygon.vertices, first, axis=0)
+    corners = corners[::-1] if clockwise else corners
+    again = Polygon(np.vstack([corners, corners[:1]]) if closed else corners)
+    assert again.vertices[0].tolist() == corners[0].tolist()
+    assert {tuple(v) for v in again.vertices} == {tuple(v) for v in polygon.vertices}
+    assert again.area == pytest.approx(polygon.area)
+    assert again.centroid == pytest.approx(polygon.centroid, abs=1e-12)
+    assert sorted(again.dimensions) == pytest.approx(sorted(polygon.dimensions))
+
+
+def test_area_and_centroid_keep_their_digits_far_from_the_origin():
+    there = np.array([2.0**30, -(2.0**30)])  # exact in floating point; the products of such numbers are not
+    far = Polygon(np.array(HOUSE) / 8 + there)
+    assert far.area == 16 / 64
+    assert (far.centroid - there).tolist() == pytest.approx([2 / 8, 49 / 24 / 8], abs=2**-22)
+
+
+MOVED_FAILURES = {
+    "a number": (0.3, "offset must be two finite numbers (x, y), got 0.3"),
+    "three numbers": ((1, 2, 3), "offset must be two finite numbers (x, y), got (1, 2, 3)"),
+    "one for each corner": (RIGHT, "offset must be two finite numbers (x, y), got [(0, 0), (3, 0), (0, 4)]"),
+    "NaN": ((NAN, 0), "offset must be two finite numbers (x, y), got (nan, 0)"),
+    "infinity": ((0, INF), "offset must be two finite numbers (x, y), got (0, inf)"),
+    "text": ("ab", "offset must be two finite numbers (x, y), got 'ab'"),
+    "None": (None, "offset must be two finite numbers (x, y), got None"),
+}
+
+
+@pytest.mark.parametrize("shape", [Circle((0, 0), 1), Polygon(RIGHT)], ids=["circle", "polygon"])
+@pytest.mark.parametrize(("offset", "sentence"), MOVED_FAILURES.values(), ids=MOVED_FAILURES)
+def test_moved_failure(shape, offset, sentence):
+    with pytest.raises(ValueError, match=exactly(sentence)):
+        shape.moved(offset)
+
+
+# --- Frozen, equal, hashed, shown ---------------------------------------------------------------------------
+
+
+def test_a_shape_cannot_be_changed():
+    corners, center = np.array(RIGHT, dtype=float), np.array([1.0, 2.0])
+    polygon, circle = Polygon(corners), Circle(center, 1)
+    corners[0], center[0] = 99, 99  # the caller's arrays are the caller's
+    assert polygon == Polygon(RIGHT)
+    assert circle == Circle((1, 2), 1)
+    for array in (polygon.vertices, circle.center, circle.centroid):
+        with pytest.raises(ValueError, match=exactly("assignment destination is read-only")):
+            array[0] = 0
+    for shape, field in ((polygon, "vertices"), (circle, "center"), (circle, "radius")):
+        with pytest.raises(dataclasses.FrozenInstanceError):
+            setattr(shape, field, 1)
+
+
+def test_a_triangles_derived_arrays_are_the_callers_own():
+    triangle = Polygon(RIGHT)
+    triangle.centroid[:] = 0
+    triangle.edges[:] = 0
+    triangle.outline(5)[:] = 9
+    assert triangle.centroid.tolist() == pytest.approx([1, 4 / 3])
+    assert triangle.sides.tolist() == [3, 5, 4]
+
+
+def test_int_input_is_promoted():
+    whole = [Polygon(np.array(RIGHT, dtype=dtype)) for dtype in (np.int8, np.int64, np.uint16, np.float32)]
+    assert set(whole) == {Polygon(RIGHT)}
+    assert all(p.vertices.dtype == np.float64 for p in whole)
+    circle = Circle(np.array([1, 2]), np.int32(3))
+    assert (circle.center.dtype, type(circle.radius)) == (np.float64, float)
+    assert circle.moved(np.array([1, 1])) == Circle((2, 3), 3)
+    assert Polygon(np.array(RIGHT)).moved((1, 1)).vertices.dtype == np.float64
+
+
+EQUALITIES = {
+    "same circle": (Circle((1, 2), 3), Circle([1.0, 2.0], 3.0), True),
+    "circle elsewhere": (Circle((1, 2), 3), Circle((1, 2.5), 3), False),
+    "circle of another radius": (Circle((1, 2), 3), Circle((1, 2), 4), False),
+    "circle one bit off": (Circle((1, 2), 3), Circle((1, 2), np.nextafter(3, 4)), False),
+    "minus zero is zero, circle": (Circle((0.0, 1), 3), Circle((-0.0, 1), 3), True),
+    "same polygon": (Polygon(RIGHT), Polygon(np.array(RIGHT)), True),
+    "same ring, closed": (Polygon(RIGHT), Polygon([*RIGHT, RIGHT[0]]), True),
+    "another first corner": (Polygon(RIGHT), Polygon(RIGHT[1:] + RIGHT[:1]), False),
+    "another number of corners": (Polygon(RIGHT), Polygon(SQUARE), False),
+    "polygon one bit off": (Polygon(RIGHT), Polygon([(0, 0), (3, 0), (0, np.nextafter(4, 5))]), False),
+    "minus zero is zero, polygon": (Polygon(RIGHT), Polygon([(-0.0, 0), (3, -0.0), (-0.0, 4)]), True),
+    "circle and polygon": (Circle((0, 0), 1), Polygon(RIGHT), False),
+    "polygon and circle": (Polygon(RIGHT), Circle((0, 0), 1), False),
+    "circle and its text": (Circle((0, 0), 1), "Circle((0, 0), 1)", False),
+    "polygon and its corners": (Polygon(RIGHT), tuple(RIGHT), False),
+}
+
+
+@pytest.mark.parametrize(("one", "other", "equal"), EQUALITIES.values(), ids=EQUALITIES)
+def test_equality_and_hash(one, other, equal):
+    assert (one == other) is equal
+    assert (one != other) is not equal
+    if equal:
+        assert hash(one) == hash(other)
+    assert len({one, other}) == 1 + (not equal)
+
+
+@given(shapes)
+def test_equal_hash_after_copying(shape):
+    for twin in (copy.copy(shape), copy.deepcopy(shape), pickle.loads(pickle.dumps(shape))):
+        assert twin == shape
+        assert hash(twin) == hash(shape)
+
+
+SHOWN = {
+    "circle": (Circle((1, 2), 3), "Circle(center=(1, 2), radius=3)"),
+    "circle of long numbers": (
+        Circle((1 / 3, -0.002), 0.1234567),
+        "Circle(center=(0.333333, -0.002), radius=0.123457)",
+    ),
+    "rounding's remainder is 0": (Circle((-1e-17, 1e-17), 1), "Circle(center=(0, 0), radius=1)"),
+    "polygon": (Polygon(RIGHT), "Polygon([(0, 0), (3, 0), (0, 4)])"),
+    "polygon of long numbers": (Polygon([(0, 0), (1 / 3, 0), (0, 1)]), "Polygon([(0, 0), (0.333333, 0), (0, 1)])"),
+}
+
+
+@pytest.mark.parametrize(("shape", "text"), SHOWN.values(), ids=SHOWN)
+def test_shown(shape, text):
+    assert repr(shape) == text
+
+
+# --- Arguments ----------------------------------------------------------------------------------------------
+
+POINTS = {
+    "list of tuples": ([(1, 2), (3, 4)], [[1.0, 2.0], [3.0, 4.0]]),
+    "whole numbers": (np.array([[1, 2]], dtype=np.uint8), [[1.0, 2.0]]),
+    "truth values count as numbers": ([(True, False)], [[1.0, 0.0]]),
+    "empty list": ([], []),
+    "empty tuple": ((), []),
+    "empty array": (np.empty((0, 2)), []),
+}
+
+
+@pytest.mark.parametrize(("points", "expected"), POINTS.values(), ids=POINTS)
+def test_as_points(points, expected):
+    array = as_points(points)
+    assert array.tolist() == expected
+    assert (array.shape, array.dtype) == ((len(expected), 2), np.float64)
+
+
+POINTS_FAILURES = {
+    "NaN": ([(0, 0), (NAN, 1)], "points must be finite, got (nan, 1.0) in row 1"),
+    "infinity, the first bad row is named": ([(0, INF), (NAN, 1)], "points must be finite, got (0.0, inf) in row 0"),
+    "None among numbers": ([(None, 1)], "points must be finite, got (nan, 1.0) in row 0"),
+    "None": (None, "points must have shape (N, 2), got shape ()"),
+    "one point without its row": ((1, 2), "points must have shape (N, 2), got shape (2,)"),
+    "columns for rows": (np.zeros((2, 7)), "points must have shape (N, 2), got shape (2, 7)"),
+    "three axes": (np.zeros((0, 2, 2)), "points must have shape (N, 2), got shape (0, 2, 2)"),
+    "ragged": ([(1, 2), (3,)], "points must be numbers in an array of shape (N, 2), got [(1, 2), (3,)]"),
+    "text": ("ab", "points must be numbers in an array of shape (N, 2), got 'ab'"),
+    "numbers as text": ([("1", "2")], "points must be numbers in an array of shape (N, 2), got [('1', '2')]"),
+    "bytes": ([(b"1", b"2")], "points must be numbers in an array of shape (N, 2), got [(b'1', b'2')]"),
+    "a dictionary": ({1: 2}, "points must be numbers in an array of shape (N, 2), got {1: 2}"),
+    "complex": ([(1j, 0)], "points must be numbers in an array of shape (N, 2), got [(1j, 0)]"),
+    "too large for a float": (
+        [(HUGE, 0)],
+        f"points must be numbers in an array of shape (N, 2), got [(1{'0' * 54}...",
+    ),
+}
+
+
+@pytest.mark.parametrize(("points", "sentence"), POINTS_FAILURES.values(), ids=POINTS_FAILURES)
+def test_as_points_failure(points, sentence):
+    for use in (as_points, Circle((0, 0), 1).signed_distance, Polygon(RIGHT).signed_distance):
+        with pytest.raises(ValueError, match=exactly(sentence)):
+            use(points)
+
+
+def test_as_points_calls_them_what_the_user_does():
+    with pytest.raises(ValueError, match=exactly("corners must have shape (N, 2), got shape ()")):
+        as_points(3, "corners")
+
+
+def test_as_point():
+    assert as_point((1, 2), "center").tolist() == [1.0, 2.0]
+
+
+def test_as_point_failure():
+    with pytest.raises(ValueError, match=exactly("goal must be two finite numbers (x, y), got (1, inf)")):
+        as_point((1, INF), "goal")
+
+
+POSES = {
+    "one pose alone": ((1, 2, 3), [[1.0, 2.0, 3.0]]),
+    "two poses": ([(1, 2, 3), (4, 5, 6)], [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]),
+    "none": ([], []),
+    "none, with its shape": (np.empty((0, 3)), []),
+}
+
+
+@pytest.mark.parametrize(("poses", "expected"), POSES.values(), ids=POSES)
+def test_as_poses(poses, expected):
+    array = as_poses(poses)
+    assert array.tolist() == expected
+    assert (array.shape, array.dtype) == ((len(expected), 3), np.float64)
+
+
+POSES_FAILURES = {
+    "without a heading": ([(1, 2)], "poses must have shape (P, 3): x, y, heading; got shape (1, 2)"),
+    "flat": ((1, 2, 3, 4, 5, 6), "poses must have shape (P, 3): x, y, heading; got shape (6,)"),
+    "None": (None, "poses must have shape (P, 3): x, y, heading; got shape ()"),
+    "NaN": ([(0, 0, 0), (0, 0, NAN)], "poses must be finite, got (0.0, 0.0, nan) in row 1"),
+    "infinity": ((INF, 0, 0), "poses must be finite, got (inf, 0.0, 0.0) in row 0"),
+    "text": ("abc", "poses must be numbers in an array of shape (P, 3): x, y, heading"),
+    "numbers as text": (("1", "2", "3"), "poses must be numbers in an array of shape (P, 3): x, y, heading"),
+    "ragged": ([(1, 2, 3), (1, 2)], "poses must be numbers in an array of shape (P, 3): x, y, heading"),
+    "too large for a float": ((HUGE, 0, 0), "poses must be numbers in an array of shape (P, 3): x, y, heading"),
+}
+
+
+@pytest.mark.parametrize(("poses", "sentence"), POSES_FAILURES.values(), ids=POSES_FAILURES)
+def test_as_poses_failure(poses, sentence):
+    with pytest.raises(ValueError, match=exactly(sentence)):
+        as_poses(poses)
+
+
+def test_as_positive():
+    assert [as_positive(v, "v") for v in (3, 0.5, np.float32(0.25), np.int8(2), 5e-324)] == [3, 0.5, 0.25, 2, 5e-324]
+    assert as_positive(0, "v", zero=True) == 0
+
+
+POSITIVE_FAILURES = {
+    "zero": (0, False, "v must be a finite number > 0, got 0"),
+    "below zero": (-1e-9, True, "v must be a finite number >= 0, got -1e-09"),
+    "NaN": (NAN, True, "v must be a finite number >= 0, got nan"),
+    "infinite": (INF, True, "v must be a finite number >= 0, got inf"),
+    "text": ("1", True, "v must be a finite number >= 0, got '1'"),
+    "false": (False, True, "v must be a finite number >= 0, got False"),
+    "None": (None, True, "v must be a finite number >= 0, got None"),
+    "too large for a float": (HUGE, False, f"v must be a finite number > 0, got 1{'0' * 56}..."),
+}
+
+
+@pytest.mark.parametrize(("value", "zero", "sentence"), POSITIVE_FAILURES.values(), ids=POSITIVE_FAILURES)
+def test_as_positive_failure(value, zero, sentence):
+    with pytest.raises(ValueError, match=exactly(sentence)):
+        as_positive(value, "v", zero=zero)
+
+
+def test_as_count():
+    assert [as_count(v, "n") for v in (1, 7, np.int64(4), np.uint8(2))] == [1, 7, 4, 2]
+    assert (as_count(0, "n", least=0), as_count(3, "n", least=3)) == (0, 3)
+
+
+COUNT_FAILURES = {
+    "below the least": (2, 3, "n must be a whole number >= 3, got 2"),
+    "numpy's truth value": (np.True_, 1, "n must be a whole number >= 1, got np.True_"),
+    "NaN": (NAN, 0, "n must be a whole number >= 0, got nan"),
+    "a list": ([1], 0, "n must be a whole number >= 0, got [1]"),
+}
+
+
+@pytest.mark.parametrize(("value", "least", "sentence"), COUNT_FAILURES.values(), ids=COUNT_FAILURES)
+def test_as_count_failure(value, least, sentence):
+    with pytest.raises(ValueError, match=exactly(sentence)):
+        as_count(value, "n", least=least)
+
+
+def test_short_cuts_at_sixty_signs():
+    assert short("x" * 58) == repr("x" * 58)
+    assert short("x" * 59) == "'" + "x" * 56 + "..."
