@@ -103,7 +103,9 @@ def seen_shares(shape: Shape, points: Floats, gap: float = GAP) -> tuple[float, 
     return tuple((nearest.reshape(len(stretches), -1) <= gap).mean(axis=1).tolist())
 
 
-def candidates(points: Floats, spread: float, *, rng: int | np.random.Generator | None = None) -> list[Candidate]:
+def candidates(
+    points: Floats, spread: float, *, soft: bool = True, rng: int | np.random.Generator | None = None
+) -> list[Candidate]:
     """Return every explanation of a cluster's points, the best first.
 
     Parameters
@@ -112,6 +114,8 @@ def candidates(points: Floats, spread: float, *, rng: int | np.random.Generator 
         Metres.
     spread : float
         Standard deviation of the points from the outline, metres.
+    soft : bool
+        Share points between sides in the last polish, as ``refine.refine_soft`` does.
     rng : int or numpy.random.Generator, optional
         Seed or generator.
 
@@ -127,7 +131,7 @@ def candidates(points: Floats, spread: float, *, rng: int | np.random.Generator 
     local = points - middle  # digits are not lost far from the origin
     rough = _rough(local, spread, np.random.default_rng(rng))
     limit = min(c.cost for c in rough) + CONTENDER
-    ranked = [_polished(local, c, spread) if c.cost <= limit else c for c in rough]
+    ranked = [_polished(local, c, spread, soft) if c.cost <= limit else c for c in rough]
     return [_moved(c, middle) for c in sorted(ranked, key=lambda c: c.cost)]
 
 
@@ -162,10 +166,10 @@ def _wall(points: Floats, spread: float, rng: np.random.Generator) -> Candidate:
     return Candidate(None, False, _cost(fit, 4, len(points), spread) + UNSEEN_COST * length)
 
 
-def _polished(points: Floats, rough: Candidate, spread: float) -> Candidate:
+def _polished(points: Floats, rough: Candidate, spread: float, soft: bool) -> Candidate:
     """Fit a candidate to the last digit, and price what was not seen of its outline."""
     figure = rough.figure
-    if isinstance(figure, Outlines):
+    if isinstance(figure, Outlines) and soft:
         settled = refine_soft(points, figure, spread, square=rough.square)
         figure = settled if settled.sound()[0] else figure
     elif isinstance(figure, Circle):

@@ -46,6 +46,10 @@ class Detection:
     margin : float
         How much better this shape explains the points than the best of another kind: twice the logarithm
         of the Bayes factor; above 10 is very strong (Kass and Raftery, 1995). Infinite without a rival.
+    count_margin : float
+        How clear it is that this is one shape of its own: how much better that explains the points than the
+        best grouping in which it is split, or merged with a neighbour, on the same scale. Infinite when no
+        other grouping came into question.
     seen : tuple of float
         The share of each side (or of the whole circle) that has points near it, 0 to 1.
     center_std : tuple of float
@@ -59,6 +63,7 @@ class Detection:
     points: Floats
     rms: float
     margin: float = float("inf")
+    count_margin: float = float("inf")
     seen: tuple[float, ...] = ()
     center_std: tuple[float, ...] = ()
     dimension_std: tuple[float, ...] = ()

@@ -16,7 +16,7 @@ any rotation, and lets the likelihood decide between circle and polygon.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -28,25 +28,31 @@ from .lines import find_lines
 from .measure import LEAST_SPREAD, Detection, as_detection, detection, spread_of
 from .paper import measure_as_published
 from .regroup import Group, explained, regrouped
-from .segmentation import check_count, segment
+from .segmentation import Grouping, check_count, segment
 
 Floats = NDArray[np.float64]
 
 SAME_SPREAD = 1.25  # fits are done anew when the spread comes out farther than this from what was supposed
-SPREAD_ROUNDS = 3
+SPREAD_ROUNDS = 2
 
 
 @dataclass(frozen=True)
 class Settings:
-    """How ``find_shapes`` works.
+    """How ``find_shapes`` works: each remedy over the published method can be switched on alone.
 
     Parameters
     ----------
+    grouping : {"link", "kmeans"}
+        How points are grouped: neighbours linked, or K-Means.
     method : {"joint", "published"}
-        ``"joint"``: all sides of a shape together, the likelihood decides. ``"published"``: the paper's.
+        How groups are measured. ``"joint"``: all sides of a shape together, the evidence decides.
+        ``"published"``: the paper's way.
+    soft : bool
+        Share points around a corner between its sides. Only for ``"joint"``, like the next two.
+    second_opinion : bool
+        Split and merge groups where that explains the points better.
     noise_std : float, optional
         Standard deviation of the sensor's ranges in metres; found from the points when not given.
-        Only for ``"joint"``.
     line_threshold : float
         A point lies on a line when it is at most this far from it, metres. Only for ``"published"``, like
         all below: 5 cells of the grid.
@@ -58,7 +64,10 @@ class Settings:
         Samples for a circle.
     """
 
+    grouping: Grouping = "link"
     method: Literal["joint", "published"] = "joint"
+    soft: bool = True
+    second_opinion: bool = True
     noise_std: float | None = None
     line_threshold: float = 0.005
     line_trials: int = 10_000
@@ -66,6 +75,8 @@ class Settings:
     circle_trials: int = 1000
 
     def __post_init__(self) -> None:
+        if self.grouping not in ("link", "kmeans"):
+            raise ValueError(f'grouping must be "link" or "kmeans", got {self.grouping!r}')
         if self.method not in ("joint", "published"):
             raise ValueError(f'method must be "joint" or "published", got {self.method!r}')
         if self.noise_std is not None:
@@ -78,7 +89,7 @@ class Settings:
 
 
 ROBUST = Settings()
-PAPER = Settings(method="published")
+PAPER = Settings(grouping="kmeans", method="published")
 
 
 def find_shapes(
@@ -122,34 +133,44 @@ def find_shapes(
     if len(points) == 0 or n_shapes == 0:
         return []
     points = points[np.lexsort((points[:, 1], points[:, 0]))]  # the order of seeing leaves no trace
-    rng = np.random.default_rng(rng)
-    found = _as_published if settings.method == "published" else _jointly
-    return sorted(found(points, n_shapes, settings, rng), key=lambda d: tuple(d.shape.centroid))
-
-
-def _jointly(points: Floats, n_shapes: int | None, settings: Settings, rng: np.random.Generator) -> list[Detection]:
-    """Group, measure, ask for a second opinion: the default way."""
-    seed = int(rng.integers(2**63))
-    labels = segment(points, method="link")
+    group_rng, measure_rng = np.random.default_rng(rng).spawn(2)
+    labels = segment(points, n_shapes, method=settings.grouping, rng=group_rng)
     together = [points[labels == label] for label in range(labels.max() + 1)]
+    if settings.method == "published":
+        found = _as_published(together, settings, measure_rng)
+    else:
+        found = _jointly(together, n_shapes, settings, measure_rng)
+    return sorted(found, key=lambda d: tuple(d.shape.centroid))
+
+
+def _jointly(
+    together: list[Floats], n_shapes: int | None, settings: Settings, rng: np.random.Generator
+) -> list[Detection]:
+    """Explain each group, and ask for a second opinion on the groups: the default way."""
+    seed = int(rng.integers(2**63))
     groups, spread = _explain_all(together, settings, seed)
-    groups = regrouped(groups, spread, n_shapes, seed)
-    found = (as_detection(group.points, group.ranked, spread) for group in groups)
-    return [d for d in found if d is not None]
+    if settings.second_opinion:
+        groups = regrouped(groups, spread, n_shapes, seed)
+    found = [(group, as_detection(group.points, group.ranked, spread)) for group in groups]
+    return [replace(d, count_margin=group.margin) for group, d in found if d is not None]
 
 
 def _explain_all(together: list[Floats], settings: Settings, seed: int) -> tuple[list[Group], float]:
     """Explain each group; where the spread is not given, find it from the points, then from the fits."""
+
+    def groups_at(spread: float) -> list[Group]:
+        return [explained(points, spread, seed, soft=settings.soft) for points in together]
+
     if settings.noise_std is not None:
         spread = float(np.hypot(settings.noise_std, LEAST_SPREAD))
-        return [explained(points, spread, seed) for points in together], spread
+        return groups_at(spread), spread
     spread = spread_of(np.vstack([np.empty((0, 2)), *together]))
+    groups = groups_at(spread)
     for _ in range(SPREAD_ROUNDS):
-        groups = [explained(points, spread, seed) for points in together]
         fitted = _spread_of_fits(groups)
         if fitted is None or 1 / SAME_SPREAD <= fitted / spread <= SAME_SPREAD:
             break
-        spread = fitted
+        spread, groups = fitted, groups_at(fitted)
     return groups, spread
 
 
@@ -164,26 +185,17 @@ def _spread_of_fits(groups: list[Group]) -> float | None:
     return max(LEAST_SPREAD, 1.4826 * float(np.median(np.abs(np.concatenate(distances)))))
 
 
-def _as_published(
-    points: Floats, n_shapes: int | None, settings: Settings, rng: np.random.Generator
-) -> list[Detection]:
-    """K-Means, line after line, extents and means: the paper's way."""
-    group_rng, line_rng, circle_rng = rng.spawn(3)
-    labels = segment(points, n_shapes, method="kmeans", rng=group_rng)
-    found = []
-    for label in range(labels.max() + 1):
-        cluster = points[labels == label]
+def _as_published(together: list[Floats], settings: Settings, rng: np.random.Generator) -> list[Detection]:
+    """Line after line, then extents and means: the paper's way."""
+    line_rng, circle_rng = rng.spawn(2)
+    reach, found = settings.line_threshold, []
+    for cluster in together:
         lines = find_lines(
-            cluster,
-            settings.line_threshold,
-            left_over=settings.left_over,
-            trials=settings.line_trials,
-            refit=False,
-            rng=line_rng,
+            cluster, reach, left_over=settings.left_over, trials=settings.line_trials, refit=False, rng=line_rng
         )
         shape = measure_as_published(
-            cluster, len(lines), threshold=settings.line_threshold, trials=settings.circle_trials, rng=circle_rng
+            cluster, len(lines), threshold=reach, trials=settings.circle_trials, rng=circle_rng
         )
         if shape is not None:
-            found.append(detection(shape, cluster, SIGMAS * settings.line_threshold))
+            found.append(detection(shape, cluster, SIGMAS * reach))
     return found

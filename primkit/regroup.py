@@ -20,7 +20,7 @@ extending K-means with efficient estimation of the number of clusters".
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -32,6 +32,8 @@ from .segmentation import LEAST_GROUP, kmeans
 from .shapes import Polygon, Shape
 
 Floats = NDArray[np.float64]
+Halves = dict[int, "tuple[Group, ...]"]  # what a group, by its id, would be split into
+Unions = dict[tuple[int, int], "Group | None"]  # what two groups, by their ids, would be merged into
 
 CLOSED = 0.9  # an outline seen on nine tenths of its length is no piece of another
 WELL_EXPLAINED = 0.9  # share of a group's points on its shape; with fewer, the group may be two
@@ -41,10 +43,15 @@ INSIDE_HULL = 0.05  # share of points that may lie inside a hull which should be
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """Points that belong together, with their explanations, the best first."""
+    """Points that belong together, with their explanations, the best first.
+
+    ``margin`` is how much better it explains the points than the best grouping in which it is split, or merged
+    with a neighbour: twice the logarithm of the Bayes factor; infinite when no other came into question.
+    """
 
     points: Floats
     ranked: list[Candidate]
+    margin: float = float("inf")
 
     @property
     def shape(self) -> Shape | None:
@@ -57,12 +64,12 @@ class Group:
         return self.ranked[0].cost if self.ranked else float(-2 * len(self.points) * np.log(GHOSTS / GHOST_AREA))
 
 
-def explained(points: Floats, spread: float, seed: int = 0) -> Group:
+def explained(points: Floats, spread: float, seed: int = 0, *, soft: bool = True) -> Group:
     """Return the points with all their explanations.
 
     Every group is measured with the same seed, so that a group's result does not depend on the others.
     """
-    return Group(points, candidates(points, spread, rng=seed))
+    return Group(points, candidates(points, spread, soft=soft, rng=seed))
 
 
 def regrouped(groups: Sequence[Group], spread: float, n_shapes: int | None = None, seed: int = 0) -> list[Group]:
@@ -82,28 +89,47 @@ def regrouped(groups: Sequence[Group], spread: float, n_shapes: int | None = Non
     Returns
     -------
     list of Group
-        As many as asked for, as far as the points allow; else as many as explain the points best.
+        As many as asked for, as far as the points allow; else as many as explain the points best. Each says
+        by how much in its ``margin``.
     """
     groups = list(groups)
+    halves: Halves = {}
+    unions: Unions = {}
     if n_shapes is None or len(groups) < n_shapes:
-        groups = _split_all(groups, spread, n_shapes, seed)
+        groups = _split_all(groups, spread, n_shapes, seed, halves)
     if n_shapes is None or len(groups) > n_shapes:
-        groups = _merge_all(groups, spread, n_shapes, seed)
-    return groups
+        groups = _merge_all(groups, spread, n_shapes, seed, unions)
+    return [replace(g, margin=_margin(g, groups, halves, unions)) for g in groups]
 
 
-def _split_all(groups: list[Group], spread: float, n_shapes: int | None, seed: int) -> list[Group]:
-    """Split the group that gains most by it, again and again."""
-    halves = {id(g): _halves(g, spread, n_shapes, seed) for g in groups}
+def _margin(group: Group, groups: list[Group], halves: Halves, unions: Unions) -> float:
+    """Return how much worse the best of the refused splits and mergers of a group is; infinite without any."""
+    refused = [_gain(halves.get(id(group), ()), group)]
+    for (a, b), union in unions.items():
+        if union is not None and id(group) in (a, b) and {a, b} <= {id(g) for g in groups}:
+            pair = [g for g in groups if id(g) in (a, b)]
+            refused.append(union.cost - sum(g.cost for g in pair))
+    return min(refused)
+
+
+def _split_all(groups: list[Group], spread: float, n_shapes: int | None, seed: int, halves: Halves) -> list[Group]:
+    """Split the group that gains most by it, again and again; enter what was tried into ``halves``."""
+    limit = 0.0 if n_shapes is None else np.inf
     while n_shapes is None or len(groups) < n_shapes:
-        gains = [sum(h.cost for h in halves[id(g)]) - g.cost if halves[id(g)] else np.inf for g in groups]
-        best = int(np.argmin(gains)) if groups else 0
-        if not groups or not gains[best] < (0 if n_shapes is None else np.inf):
+        for g in groups:
+            if id(g) not in halves:
+                halves[id(g)] = _halves(g, spread, n_shapes, seed)
+        best = min(groups, key=lambda g: _gain(halves[id(g)], g), default=None)
+        if best is None or not _gain(halves[id(best)], best) < limit:
             break
-        new = halves[id(groups[best])]
-        groups[best : best + 1] = new
-        halves.update({id(g): _halves(g, spread, n_shapes, seed) for g in new})
+        at = groups.index(best)
+        groups = [*groups[:at], *halves[id(best)], *groups[at + 1 :]]
     return groups
+
+
+def _gain(parts: tuple[Group, ...], group: Group) -> float:
+    """Return by how much the parts cost more than the whole; infinite without parts."""
+    return sum(part.cost for part in parts) - group.cost if parts else float("inf")
 
 
 def _halves(group: Group, spread: float, n_shapes: int | None, seed: int) -> tuple[Group, ...]:
@@ -123,17 +149,16 @@ def _share_on_shape(group: Group, spread: float) -> float:
     return float(np.mean(np.abs(group.shape.signed_distance(group.points)) <= SIGMAS * spread))
 
 
-def _merge_all(groups: list[Group], spread: float, n_shapes: int | None, seed: int) -> list[Group]:
-    """Merge the two groups that gain most by it, again and again."""
-    merged: dict[tuple[int, int], Group | None] = {}
+def _merge_all(groups: list[Group], spread: float, n_shapes: int | None, seed: int, unions: Unions) -> list[Group]:
+    """Merge the two groups that gain most by it, again and again; enter what was tried into ``unions``."""
     while len(groups) > (n_shapes or 1):
         best, best_gain = None, 0.0 if n_shapes is None else np.inf
         for a, b in combinations(groups, 2):
-            if (id(a), id(b)) not in merged:
+            if (id(a), id(b)) not in unions:
                 plausible = n_shapes is not None or _may_be_one(a, b, spread)
                 together = np.vstack([a.points, b.points])
-                merged[id(a), id(b)] = explained(together, spread, seed) if plausible else None
-            one = merged[id(a), id(b)]
+                unions[id(a), id(b)] = explained(together, spread, seed) if plausible else None
+            one = unions[id(a), id(b)]
             if one is not None and one.ranked and one.cost - a.cost - b.cost < best_gain:
                 best, best_gain = (a, b, one), one.cost - a.cost - b.cost
         if best is None:

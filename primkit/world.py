@@ -39,7 +39,7 @@ LEAST_CORNER = np.radians(30)
 LEAST_SIDE = 0.04
 
 TRIES_PER_SHAPE = 300  # a shape that found no room in this many tries will hardly find any
-TRIES_PER_WORLD = 100
+TRIES_PER_WORLD = 20
 
 Style = Literal["paper", "free"]
 

@@ -3,6 +3,8 @@
 Every figure is printed beside the oracle's (see tests/oracle.py): ``pytest tests/test_accuracy.py -s``.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -59,11 +61,11 @@ def test_robust_on_free_maps(gap, spurious, least):
 
 def test_the_published_method_is_not_better_than_published():
     """The fair score of PAPER stays well below ROBUST's: the remedies buy something."""
-    few = pk.Settings(method="published", line_trials=500)
+    few = replace(pk.PAPER, line_trials=2000)
     scores = []
-    for number, world in enumerate(list(pk.paper_suite().values())[::4]):
+    for number, world in enumerate(pk.paper_suite().values()):
         grid = pk.Grid()
         grid.add(pk.scan(world, pk.teleport_poses(world)))
         found = pk.find_shapes(grid.points(), len(world.shapes), settings=few, rng=number)
         scores.append(pk.evaluate(found, world).weighted_accuracy)
-    assert 0.6 < np.mean(scores) < 0.95
+    assert 0.80 < np.mean(scores) < 0.97

@@ -92,5 +92,7 @@ def test_a_line_over_a_hidden_side_is_not_seen():
 
 
 def test_the_published_method_states_no_deviation():
-    found = pk.find_shapes(TRIANGLE.outline(200), 1, settings=pk.Settings(method="published", line_trials=200), rng=0)
+    found = pk.find_shapes(
+        TRIANGLE.outline(200), 1, settings=pk.Settings(grouping="kmeans", method="published", line_trials=200), rng=0
+    )
     assert all(d.dimension_std == () for d in found)

@@ -17,7 +17,8 @@ def bits(value):
     if isinstance(value, pk.Scans):
         return value.ranges.tobytes() + value.poses.tobytes()
     if isinstance(value, pk.Detection):
-        return bits(value.shape) + value.points.tobytes() + np.float64([value.rms, value.margin, *value.seen, *value.center_std, *value.dimension_std]).tobytes()
+        numbers = [value.rms, value.margin, value.count_margin, *value.seen, *value.center_std, *value.dimension_std]
+        return bits(value.shape) + value.points.tobytes() + np.float64(numbers).tobytes()
     if isinstance(value, pk.Circle):
         return value.center.tobytes() + np.float64(value.radius).tobytes()
     if isinstance(value, pk.Polygon):
@@ -41,7 +42,7 @@ scans = pk.scan(world, pk.teleport_poses(world), noisy, rng=2)
 grid = pk.Grid()
 grid.add(scans)
 points = grid.points()
-few = pk.Settings(method="published", line_trials=300)
+few = pk.Settings(grouping="kmeans", method="published", line_trials=300)
 results = {
     "random_world": [world, pk.random_world(5, style="free", rng=3)],
     "scan": scans,

@@ -64,8 +64,8 @@ def test_unsound(angles, offsets):
 
 def test_moving_moves_every_corner():
     square = Outlines(SQUARE[None], np.full((1, 4), 0.1))
-    moved = square.moved(np.array([0.3, -0.2]))
-    np.testing.assert_allclose(moved.corners(), square.corners() + [0.3, -0.2], atol=1e-15)
+    offset = np.array([0.3, -0.2])
+    np.testing.assert_allclose(square.moved(offset).corners(), square.corners() + offset, atol=1e-15)
 
 
 def test_joined_keeps_the_order_and_selecting_selects():

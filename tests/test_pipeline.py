@@ -1,5 +1,7 @@
 """find_shapes as a whole: invariances, edge cases, exact messages, both settings."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -20,7 +22,7 @@ def test_the_order_of_the_points_does_not_matter_to_the_last_bit():
     points = points_of(pk.random_world(4, rng=3))
     shuffled = np.random.default_rng(0).permutation(points)
     assert same(pk.find_shapes(points, rng=0), pk.find_shapes(shuffled, rng=0))
-    few = pk.Settings(method="published", line_trials=200)
+    few = replace(pk.PAPER, line_trials=200)
     assert same(
         pk.find_shapes(points, 4, settings=few, rng=0),
         pk.find_shapes(shuffled, 4, settings=few, rng=0),
@@ -108,6 +110,10 @@ FAILURES = {
         lambda: pk.Settings(method="magic"),
         'method must be "joint" or "published", got \'magic\'',
     ),
+    "an unknown grouping": (
+        lambda: pk.Settings(grouping="magic"),
+        'grouping must be "link" or "kmeans", got \'magic\'',
+    ),
     "negative noise": (lambda: pk.Settings(noise_std=-1), "noise_std must be a finite number >= 0, got -1"),
     "an unknown name": (lambda: pk.find_shape, "module 'primkit' has no attribute 'find_shape'"),
 }
@@ -122,5 +128,26 @@ def test_failure(call, message):
 
 def test_the_paper_finds_the_number_by_silhouette_when_it_is_not_told():
     world = pk.World([pk.Circle((-0.25, -0.25), 0.06), pk.Circle((0.25, 0.25), 0.06)])
-    few = pk.Settings(method="published", line_trials=300)
+    few = replace(pk.PAPER, line_trials=300)
     assert len(pk.find_shapes(points_of(world), settings=few, rng=0)) == 2
+
+
+def test_the_count_is_unsure_where_the_pieces_cannot_say():
+    """Two far pieces of one circle: one shape, but two would do as well; two whole circles leave no doubt."""
+    ring = pk.Circle((0, 0), 0.08).outline(160)
+    pieces = np.vstack([ring[:60], ring[80:140]])
+    (one,) = pk.find_shapes(pieces, rng=0)
+    assert one.kind == "circle"
+    whole = pk.find_shapes(np.vstack([ring, ring + np.array([0.3, 0.0])]), rng=0)
+    assert [d.count_margin for d in whole] == [float("inf")] * 2
+
+
+def test_each_remedy_can_be_switched_on_alone():
+    """Linking mends K-Means on a long thin rectangle beside a small circle."""
+    thin = pk.Polygon([(-0.3, 0.0), (0.0, 0.0), (0.0, 0.06), (-0.3, 0.06)])
+    world = pk.World([thin, pk.Circle((0.09, 0.03), 0.04)])
+    points = points_of(world)
+    plain = pk.Settings(grouping="kmeans", second_opinion=False)
+    linked = pk.Settings(second_opinion=False)
+    assert pk.evaluate(pk.find_shapes(points, 2, settings=plain, rng=0), world).weighted_accuracy < 0.9
+    assert pk.evaluate(pk.find_shapes(points, 2, settings=linked, rng=0), world).weighted_accuracy == 1.0

@@ -45,7 +45,7 @@ from primkit.study import (
 from primkit.world import World, random_world
 
 ROOT = Path(__file__).resolve().parent.parent
-QUICK = Settings(method="published", line_trials=200, circle_trials=100)
+QUICK = Settings(grouping="kmeans", method="published", line_trials=200, circle_trials=100)
 BOTH = {"PAPER": QUICK, "ROBUST": ROBUST}
 ONE = World([Circle((0.1, 0.0), 0.06)])  # two way-points lie in it
 WORLDS = {"one": ONE, "two": random_world(2, rng=3)}
