@@ -17,6 +17,7 @@ down no farther than to the noise of one of them, it is BIC, Schwarz (1978), "Es
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,8 @@ GAP = 0.012  # m: a stretch of outline within this of a point counts as seen
 CIRCLE_TRIALS = 100  # with four fifths of the points on the circle, one sample in two is clean
 CIRCLE_ROUNDS = 4
 WALL_TRIALS = 100
+STARTS_KEPT = 5  # of the guesses, those closest to the points are refined
+WIDER = 0.005  # m: guesses are judged with a longer reach than fits, because they still lie beside the points
 # What is supposed before the points are looked at. Each number of a shape is known to about a centimetre. An outline
 # is seen nearly all around: each metre that was not seen is as unlikely as one in e^40. And four sides without right
 # angles are none of the board's shapes: one in e^10.
@@ -67,7 +70,7 @@ class Candidate:
     square: bool
     cost: float
 
-    @property
+    @cached_property
     def shape(self) -> Shape | None:
         """The figure as a shape; None for a bare wall."""
         return self.figure.polygon() if isinstance(self.figure, Outlines) else self.figure
@@ -150,7 +153,8 @@ def _rough(points: Floats, spread: float, rng: np.random.Generator) -> list[Cand
         if k == 4:
             starts.append((guess_rectangles(points, sides, guess), True))
         for start, square in starts:
-            refined = refine_hard(points, start, reach, square=square)
+            order = np.argsort(truncated_cost(points, start, reach + WIDER), kind="stable")
+            refined = refine_hard(points, start[order[:STARTS_KEPT]], reach, square=square)
             refined = refined[refined.sound()]
             if len(refined):
                 best = int(np.argmin(truncated_cost(points, refined, reach)))

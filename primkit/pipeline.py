@@ -16,7 +16,9 @@ any rotation, and lets the likelihood decide between circle and polygon.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -31,6 +33,7 @@ from .regroup import Group, explained, regrouped
 from .segmentation import Grouping, check_count, segment
 
 Floats = NDArray[np.float64]
+Memory = dict[tuple[bytes, float, int, bool], Group]  # groups as they were measured last, by their points
 
 SAME_SPREAD = 1.25  # fits are done anew when the spread comes out farther than this from what was supposed
 SPREAD_ROUNDS = 2
@@ -97,6 +100,7 @@ def find_shapes(
     n_shapes: int | None = None,
     *,
     settings: Settings = ROBUST,
+    memory: Memory | None = None,
     rng: int | np.random.Generator | None = None,
 ) -> list[Detection]:
     """Find the shapes whose outlines the points lie on.
@@ -109,6 +113,10 @@ def find_shapes(
         How many shapes there are; found when it is not given. ``PAPER`` then takes K-Means' best silhouette.
     settings : Settings
         ``ROBUST`` or ``PAPER``, or your own.
+    memory : dict, optional
+        For mapping while driving: hand in the same dictionary, empty at first, with every call, and the same
+        seed as ``rng``. Groups whose points have not changed since the last call are not measured again; the
+        result is the same as without it.
     rng : int or numpy.random.Generator, optional
         Seed or generator: the same seed gives the same shapes, to the last bit, for points in any order.
 
@@ -139,39 +147,54 @@ def find_shapes(
     if settings.method == "published":
         found = _as_published(together, settings, measure_rng)
     else:
-        found = _jointly(together, n_shapes, settings, measure_rng)
+        found = _jointly(together, n_shapes, settings, {} if memory is None else memory, measure_rng)
     return sorted(found, key=lambda d: tuple(d.shape.centroid))
 
 
 def _jointly(
-    together: list[Floats], n_shapes: int | None, settings: Settings, rng: np.random.Generator
+    together: list[Floats], n_shapes: int | None, settings: Settings, memory: Memory, rng: np.random.Generator
 ) -> list[Detection]:
     """Explain each group, and ask for a second opinion on the groups: the default way."""
     seed = int(rng.integers(2**63))
-    groups, spread = _explain_all(together, settings, seed)
+    used: Memory = {}
+
+    def explain(points: Floats, spread: float) -> Group:
+        key = (points.tobytes(), spread, seed, settings.soft)
+        if key not in used:
+            used[key] = memory[key] if key in memory else explained(points, spread, seed, soft=settings.soft)
+        return used[key]
+
+    groups, spread = _explain_all(together, settings, explain)
     if settings.second_opinion:
-        groups = regrouped(groups, spread, n_shapes, seed)
+        groups = regrouped(groups, spread, n_shapes, explain=partial(explain, spread=spread))
+    memory.clear()  # what was not used now will not come again: a map only grows
+    memory.update(used)
     found = [(group, as_detection(group.points, group.ranked, spread)) for group in groups]
     return [replace(d, count_margin=group.margin) for group, d in found if d is not None]
 
 
-def _explain_all(together: list[Floats], settings: Settings, seed: int) -> tuple[list[Group], float]:
+def _explain_all(
+    together: list[Floats], settings: Settings, explain: Callable[[Floats, float], Group]
+) -> tuple[list[Group], float]:
     """Explain each group; where the spread is not given, find it from the points, then from the fits."""
-
-    def groups_at(spread: float) -> list[Group]:
-        return [explained(points, spread, seed, soft=settings.soft) for points in together]
-
     if settings.noise_std is not None:
         spread = float(np.hypot(settings.noise_std, LEAST_SPREAD))
-        return groups_at(spread), spread
-    spread = spread_of(np.vstack([np.empty((0, 2)), *together]))
-    groups = groups_at(spread)
+        return [explain(points, spread) for points in together], spread
+    spread = _in_steps(spread_of(np.vstack([np.empty((0, 2)), *together])))
+    groups = [explain(points, spread) for points in together]
     for _ in range(SPREAD_ROUNDS):
         fitted = _spread_of_fits(groups)
         if fitted is None or 1 / SAME_SPREAD <= fitted / spread <= SAME_SPREAD:
             break
-        spread, groups = fitted, groups_at(fitted)
+        spread = _in_steps(fitted)
+        groups = [explain(points, spread) for points in together]
     return groups, spread
+
+
+def _in_steps(spread: float) -> float:
+    """Return the spread rounded to steps of a tenth of itself: a few points more must not make all fits anew."""
+    step = np.log(1.1)
+    return float(LEAST_SPREAD * np.exp(step * round(np.log(spread / LEAST_SPREAD) / step)))
 
 
 def _spread_of_fits(groups: list[Group]) -> float | None:

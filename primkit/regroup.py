@@ -19,8 +19,9 @@ extending K-means with efficient estimation of the number of clusters".
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from itertools import combinations
 
 import numpy as np
@@ -32,6 +33,7 @@ from .segmentation import LEAST_GROUP, kmeans
 from .shapes import Polygon, Shape
 
 Floats = NDArray[np.float64]
+Explain = Callable[[Floats], "Group"]
 Halves = dict[int, "tuple[Group, ...]"]  # what a group, by its id, would be split into
 Unions = dict[tuple[int, int], "Group | None"]  # what two groups, by their ids, would be merged into
 
@@ -58,6 +60,15 @@ class Group:
         """The best explanation's shape; None for a bare wall or too few points."""
         return self.ranked[0].shape if self.ranked else None
 
+    @cached_property
+    def closed(self) -> bool:
+        """Whether the best explanation's outline was seen nearly all around."""
+        shape = self.shape
+        if shape is None:
+            return False
+        lengths = shape.sides if isinstance(shape, Polygon) else [shape.perimeter]
+        return bool(np.average(seen_shares(shape, self.points), weights=lengths) >= CLOSED)
+
     @property
     def cost(self) -> float:
         """Cost of the best explanation; smaller is better. Too few points for any: each comes from nowhere."""
@@ -72,7 +83,13 @@ def explained(points: Floats, spread: float, seed: int = 0, *, soft: bool = True
     return Group(points, candidates(points, spread, soft=soft, rng=seed))
 
 
-def regrouped(groups: Sequence[Group], spread: float, n_shapes: int | None = None, seed: int = 0) -> list[Group]:
+def regrouped(
+    groups: Sequence[Group],
+    spread: float,
+    n_shapes: int | None = None,
+    *,
+    explain: Explain | None = None,
+) -> list[Group]:
     """Split and merge groups as long as that explains the points better.
 
     Parameters
@@ -83,8 +100,8 @@ def regrouped(groups: Sequence[Group], spread: float, n_shapes: int | None = Non
         Standard deviation of the points from the outlines, metres.
     n_shapes : int, optional
         The number of groups to end with, when it is known.
-    seed : int
-        Seed for measuring and for K-Means.
+    explain : callable, optional
+        Explains (N, 2) points as a group; ``explained`` by default.
 
     Returns
     -------
@@ -92,13 +109,14 @@ def regrouped(groups: Sequence[Group], spread: float, n_shapes: int | None = Non
         As many as asked for, as far as the points allow; else as many as explain the points best. Each says
         by how much in its ``margin``.
     """
+    explain = explain or partial(explained, spread=spread)
     groups = list(groups)
     halves: Halves = {}
     unions: Unions = {}
     if n_shapes is None or len(groups) < n_shapes:
-        groups = _split_all(groups, spread, n_shapes, seed, halves)
+        groups = _split_all(groups, spread, n_shapes, explain, halves)
     if n_shapes is None or len(groups) > n_shapes:
-        groups = _merge_all(groups, spread, n_shapes, seed, unions)
+        groups = _merge_all(groups, spread, n_shapes, explain, unions)
     return [replace(g, margin=_margin(g, groups, halves, unions)) for g in groups]
 
 
@@ -112,13 +130,15 @@ def _margin(group: Group, groups: list[Group], halves: Halves, unions: Unions) -
     return min(refused)
 
 
-def _split_all(groups: list[Group], spread: float, n_shapes: int | None, seed: int, halves: Halves) -> list[Group]:
+def _split_all(
+    groups: list[Group], spread: float, n_shapes: int | None, explain: Explain, halves: Halves
+) -> list[Group]:
     """Split the group that gains most by it, again and again; enter what was tried into ``halves``."""
     limit = 0.0 if n_shapes is None else np.inf
     while n_shapes is None or len(groups) < n_shapes:
         for g in groups:
             if id(g) not in halves:
-                halves[id(g)] = _halves(g, spread, n_shapes, seed)
+                halves[id(g)] = _halves(g, spread, n_shapes, explain)
         best = min(groups, key=lambda g: _gain(halves[id(g)], g), default=None)
         if best is None or not _gain(halves[id(best)], best) < limit:
             break
@@ -132,14 +152,14 @@ def _gain(parts: tuple[Group, ...], group: Group) -> float:
     return sum(part.cost for part in parts) - group.cost if parts else float("inf")
 
 
-def _halves(group: Group, spread: float, n_shapes: int | None, seed: int) -> tuple[Group, ...]:
+def _halves(group: Group, spread: float, n_shapes: int | None, explain: Explain) -> tuple[Group, ...]:
     """Return a group as two, cut by K-Means; nothing when it is too small, or well explained as it is."""
     if not group.ranked or len(group.points) < 2 * LEAST_GROUP:
         return ()
     if n_shapes is None and _share_on_shape(group, spread) >= WELL_EXPLAINED:
         return ()
-    labels = kmeans(group.points, 2, rng=seed)
-    return tuple(explained(group.points[labels == label], spread, seed) for label in (0, 1))
+    labels = kmeans(group.points, 2, rng=0)
+    return tuple(explain(group.points[labels == label]) for label in (0, 1))
 
 
 def _share_on_shape(group: Group, spread: float) -> float:
@@ -149,15 +169,16 @@ def _share_on_shape(group: Group, spread: float) -> float:
     return float(np.mean(np.abs(group.shape.signed_distance(group.points)) <= SIGMAS * spread))
 
 
-def _merge_all(groups: list[Group], spread: float, n_shapes: int | None, seed: int, unions: Unions) -> list[Group]:
+def _merge_all(
+    groups: list[Group], spread: float, n_shapes: int | None, explain: Explain, unions: Unions
+) -> list[Group]:
     """Merge the two groups that gain most by it, again and again; enter what was tried into ``unions``."""
     while len(groups) > (n_shapes or 1):
         best, best_gain = None, 0.0 if n_shapes is None else np.inf
         for a, b in combinations(groups, 2):
             if (id(a), id(b)) not in unions:
                 plausible = n_shapes is not None or _may_be_one(a, b, spread)
-                together = np.vstack([a.points, b.points])
-                unions[id(a), id(b)] = explained(together, spread, seed) if plausible else None
+                unions[id(a), id(b)] = explain(np.vstack([a.points, b.points])) if plausible else None
             one = unions[id(a), id(b)]
             if one is not None and one.ranked and one.cost - a.cost - b.cost < best_gain:
                 best, best_gain = (a, b, one), one.cost - a.cost - b.cost
@@ -175,7 +196,7 @@ def _may_be_one(a: Group, b: Group, spread: float) -> bool:
     """
     import shapely
 
-    if _is_closed(a) and _is_closed(b):
+    if a.closed and b.closed:
         return False
     points = np.vstack([a.points, b.points])
     if np.ptp(points, axis=0).max() > MOST_ACROSS:
@@ -184,12 +205,3 @@ def _may_be_one(a: Group, b: Group, spread: float) -> bool:
     depth = shapely.distance(hull.boundary, shapely.points(points))
     # The hull runs along the outermost points: the others lie up to six spreads farther in.
     return bool(np.mean(depth > 6 * spread + 0.002) <= INSIDE_HULL)
-
-
-def _is_closed(group: Group) -> bool:
-    """Tell whether a group's outline was seen nearly all around."""
-    shape = group.shape
-    if shape is None:
-        return False
-    lengths = shape.sides if isinstance(shape, Polygon) else [shape.perimeter]
-    return bool(np.average(seen_shares(shape, group.points), weights=lengths) >= CLOSED)

@@ -151,3 +151,29 @@ def test_each_remedy_can_be_switched_on_alone():
     linked = pk.Settings(second_opinion=False)
     assert pk.evaluate(pk.find_shapes(points, 2, settings=plain, rng=0), world).weighted_accuracy < 0.9
     assert pk.evaluate(pk.find_shapes(points, 2, settings=linked, rng=0), world).weighted_accuracy == 1.0
+
+
+def test_a_memory_changes_nothing_but_the_work(monkeypatch):
+    """While driving, each scan changes one or two groups: only these are measured again, with the same result."""
+    import primkit.pipeline as pipeline
+
+    measured = []
+    real = pipeline.explained
+    monkeypatch.setattr(pipeline, "explained", lambda points, *a, **k: measured.append(1) or real(points, *a, **k))
+    world = pk.random_world(4, rng=8)
+    scans = pk.scan(world, pk.teleport_poses(world))
+    grid, memory = pk.Grid(), {}
+    for number in range(20, 60, 4):
+        grid.add(scans[number : number + 4])
+        points = grid.points()
+        measured.clear()
+        fresh = pk.find_shapes(points, rng=0)
+        without = len(measured)
+        measured.clear()
+        remembered = pk.find_shapes(points, memory=memory, rng=0)
+        assert same(fresh, remembered)
+        assert len(measured) <= without
+    measured.clear()
+    pk.find_shapes(points, memory=memory, rng=0)
+    assert measured == []
+    assert len(memory) < 30
