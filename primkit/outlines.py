@@ -70,7 +70,7 @@ class Outlines:
     def corners(self) -> Floats:
         """Return the corners, shape (C, K, 2), metres; corner i lies between side i - 1 and side i."""
         a, d = self.angles, self.offsets
-        before_a, before_d = np.roll(a, 1, axis=1), np.roll(d, 1, axis=1)
+        before_a, before_d = _before(a), _before(d)
         bend = np.sin(a - before_a)
         bend = np.where(np.abs(bend) < PARALLEL, PARALLEL, bend)
         x = (before_d * np.sin(a) - d * np.sin(before_a)) / bend
@@ -80,14 +80,14 @@ class Outlines:
     def spans(self) -> tuple[Floats, Floats]:
         """Return where each side begins and ends along its line, shape (C, K) each, metres."""
         corners, a = self.corners(), self.angles
-        after = np.roll(corners, -1, axis=1)
+        after = _after(corners)
         begin = corners[..., 1] * np.cos(a) - corners[..., 0] * np.sin(a)
         end = after[..., 1] * np.cos(a) - after[..., 0] * np.sin(a)
         return begin, end
 
     def sound(self) -> NDArray[np.bool_]:
         """Tell which outlines are closed and convex, with sides and corners that a sensor can tell, shape (C,)."""
-        turn = np.mod(np.roll(self.angles, -1, axis=1) - self.angles, 2 * np.pi)
+        turn = np.mod(_after(self.angles) - self.angles, 2 * np.pi)
         begin, end = self.spans()
         once_round = np.abs(turn.sum(axis=1) - 2 * np.pi) < 1e-6
         bends = ((turn >= LEAST_TURN) & (turn <= MOST_TURN)).all(axis=1)
@@ -100,6 +100,16 @@ class Outlines:
     def polygon(self, index: int = 0) -> Polygon:
         """Return one of the outlines as a Polygon."""
         return Polygon(self.corners()[index])
+
+
+def _before(sides: Floats) -> Floats:
+    """Return for each side what belongs to the one before it; several times faster than np.roll."""
+    return np.concatenate([sides[:, -1:], sides[:, :-1]], axis=1)
+
+
+def _after(sides: Floats) -> Floats:
+    """Return for each side what belongs to the one after it."""
+    return np.concatenate([sides[:, 1:], sides[:, :1]], axis=1)
 
 
 def joined(*outlines: Outlines) -> Outlines:

@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 from .arguments import as_count, as_points, as_positive
 from .explain import SIGMAS
 from .lines import find_lines
-from .measure import LEAST_SPREAD, Detection, as_detection, detection, spread_of
+from .measure import LEAST_SPREAD, Detection, detection, spread_of
 from .paper import measure_as_published
 from .regroup import Group, explained, regrouped
 from .segmentation import Grouping, check_count, segment
@@ -165,12 +165,16 @@ def _jointly(
         return used[key]
 
     groups, spread = _explain_all(together, settings, explain)
+    margins = [float("inf")] * len(groups)
     if settings.second_opinion:
-        groups = regrouped(groups, spread, n_shapes, explain=partial(explain, spread=spread))
+        groups, margins = regrouped(groups, spread, n_shapes, explain=partial(explain, spread=spread))
     memory.clear()  # what was not used now will not come again: a map only grows
     memory.update(used)
-    found = [(group, as_detection(group.points, group.ranked, spread)) for group in groups]
-    return [replace(d, count_margin=group.margin) for group, d in found if d is not None]
+    return [
+        replace(group.detection, count_margin=margin)
+        for group, margin in zip(groups, margins, strict=True)
+        if group.detection is not None
+    ]
 
 
 def _explain_all(

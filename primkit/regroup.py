@@ -10,8 +10,9 @@ Out: groups again, each with its explanations.
 >>> from primkit.shapes import Circle
 >>> ring = Circle((0, 0), 0.06).outline(100)
 >>> halves = [explained(ring[:45], 0.0004), explained(ring[50:95], 0.0004)]
->>> len(regrouped(halves, 0.0004))
-1
+>>> groups, margins = regrouped(halves, 0.0004)
+>>> len(groups), groups[0].detection.kind
+(1, 'circle')
 
 Source: splitting and merging by what explains the points better, as X-Means does: Pelleg and Moore (2000), "X-means:
 extending K-means with efficient estimation of the number of clusters".
@@ -20,7 +21,7 @@ extending K-means with efficient estimation of the number of clusters".
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import combinations
 
@@ -28,6 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .explain import SIGMAS, Candidate, candidates, seen_shares
+from .measure import Detection, as_detection
 from .refine import GHOST_AREA, GHOSTS
 from .segmentation import LEAST_GROUP, kmeans
 from .shapes import Polygon, Shape
@@ -45,15 +47,16 @@ INSIDE_HULL = 0.05  # share of points that may lie inside a hull which should be
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """Points that belong together, with their explanations, the best first.
-
-    ``margin`` is how much better it explains the points than the best grouping in which it is split, or merged
-    with a neighbour: twice the logarithm of the Bayes factor; infinite when no other came into question.
-    """
+    """Points that belong together, with their explanations, the best first, at a spread in metres."""
 
     points: Floats
     ranked: list[Candidate]
-    margin: float = float("inf")
+    spread: float
+
+    @cached_property
+    def detection(self) -> Detection | None:
+        """The best explanation as a detection; None for a bare wall or too few points."""
+        return as_detection(self.points, self.ranked, self.spread)
 
     @property
     def shape(self) -> Shape | None:
@@ -80,7 +83,7 @@ def explained(points: Floats, spread: float, seed: int = 0, *, soft: bool = True
 
     Every group is measured with the same seed, so that a group's result does not depend on the others.
     """
-    return Group(points, candidates(points, spread, soft=soft, rng=seed))
+    return Group(points, candidates(points, spread, soft=soft, rng=seed), spread)
 
 
 def regrouped(
@@ -89,7 +92,7 @@ def regrouped(
     n_shapes: int | None = None,
     *,
     explain: Explain | None = None,
-) -> list[Group]:
+) -> tuple[list[Group], list[float]]:
     """Split and merge groups as long as that explains the points better.
 
     Parameters
@@ -105,9 +108,11 @@ def regrouped(
 
     Returns
     -------
-    list of Group
-        As many as asked for, as far as the points allow; else as many as explain the points best. Each says
-        by how much in its ``margin``.
+    groups : list of Group
+        As many as asked for, as far as the points allow; else as many as explain the points best.
+    margins : list of float
+        For each group, how much better it explains the points than the best grouping in which it is split or
+        merged with a neighbour: twice the logarithm of the Bayes factor; infinite when none was in question.
     """
     explain = explain or partial(explained, spread=spread)
     groups = list(groups)
@@ -117,7 +122,7 @@ def regrouped(
         groups = _split_all(groups, spread, n_shapes, explain, halves)
     if n_shapes is None or len(groups) > n_shapes:
         groups = _merge_all(groups, spread, n_shapes, explain, unions)
-    return [replace(g, margin=_margin(g, groups, halves, unions)) for g in groups]
+    return groups, [_margin(g, groups, halves, unions) for g in groups]
 
 
 def _margin(group: Group, groups: list[Group], halves: Halves, unions: Unions) -> float:

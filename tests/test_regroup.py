@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import primkit as pk
+from primkit import regroup
 from primkit.measure import LEAST_SPREAD
-from primkit.regroup import explained, regrouped
+from primkit.regroup import explained
 
 RECTANGLE = pk.Polygon([(-0.1, -0.04), (0.1, -0.04), (0.1, 0.04), (-0.1, 0.04)])
 CIRCLE = pk.Circle((0.2, 0.0), 0.05)
@@ -13,6 +14,10 @@ CIRCLE = pk.Circle((0.2, 0.0), 0.05)
 
 def groups_of(*parts):
     return [explained(np.asarray(part), LEAST_SPREAD) for part in parts]
+
+
+def regrouped(*arguments):
+    return regroup.regrouped(*arguments)[0]
 
 
 def kinds(groups):
@@ -63,3 +68,14 @@ def test_no_point_is_lost():
     parts = groups_of(points[:150], points[170:390], CIRCLE.outline(90))
     after = regrouped(parts, LEAST_SPREAD)
     assert sum(len(g.points) for g in after) == sum(len(g.points) for g in parts)
+
+
+def test_the_margin_says_how_close_another_grouping_came():
+    """Far pieces that were merged could be two; whole outlines leave no other grouping in question."""
+    points = RECTANGLE.outline(400)
+    left, right = points[points[:, 0] < -0.02], points[points[:, 0] > 0.02]
+    _, (margin,) = regroup.regrouped(groups_of(np.vstack([left, right])), LEAST_SPREAD, 1)
+    assert margin == float("inf")  # well explained: nothing else was tried
+    groups, margins = regroup.regrouped(groups_of(left, CIRCLE.outline(150)), LEAST_SPREAD)
+    assert len(groups) == 2
+    assert all(m > 10 for m in margins)
