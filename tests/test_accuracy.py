@@ -1,6 +1,6 @@
 """What the README promises of accuracy, held on maps that nothing was tuned on.
 
-Every figure is printed beside the oracle's (see tests/oracle.py): ``pytest tests/test_accuracy.py -s``.
+Every figure is printed beside the oracle's (see primkit/study/oracle.py): ``pytest tests/test_accuracy.py -s``.
 """
 
 from dataclasses import replace
@@ -9,15 +9,17 @@ import numpy as np
 import pytest
 
 import primkit as pk
-from tests.oracle import oracle_fit, told
+from primkit.study.oracle import oracle_fit, told_points
 
 
 def compare(worlds, seed=0, **sensor):
     """Return the reports of ROBUST and of the oracle for each world, at 5 mm."""
     ours, oracles = [], []
     for number, world in enumerate(worlds):
-        points, owners, grid = told(world, pk.teleport_poses(world), pk.Lidar(**sensor), [seed, number])
-        ours.append(pk.evaluate(pk.find_shapes(grid.points(), rng=0), world))
+        lidar = pk.Lidar(**sensor)
+        scans = pk.scan(world, pk.teleport_poses(world), lidar, rng=[seed, number])
+        points, owners = told_points(world, scans, lidar)
+        ours.append(pk.evaluate(pk.find_shapes(points, rng=0), world))
         oracles.append(pk.evaluate([s for s in oracle_fit(world, points, owners) if s is not None], world))
     return ours, oracles
 

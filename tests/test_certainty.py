@@ -96,3 +96,14 @@ def test_the_published_method_states_no_deviation():
         TRIANGLE.outline(200), 1, settings=pk.Settings(grouping="kmeans", method="published", line_trials=200), rng=0
     )
     assert all(d.dimension_std == () for d in found)
+
+
+def test_the_neighbours_of_a_hidden_side_are_not_measured_either():
+    """Nobody saw where they end."""
+    points = PENTAGON.outline(400)
+    outline = outline_of(PENTAGON)
+    found = measure_shape(points[np.abs(outline.distances(points)[0, :, 2]) > 0.0015], 0.0, rng=0)
+    assert found.kind == "pentagon"
+    assert sorted(found.measured) == [False, False, False, True, True]
+    unseen = int(np.argmin(found.seen))
+    assert not any(found.measured[(unseen + step) % 5] for step in (-1, 0, 1))

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import primkit as pk
-from primkit.explain import candidates, seen_shares
+from primkit.explain import _cost, candidates, seen_shares
 from primkit.measure import LEAST_SPREAD, measure_shape, spread_of
 
 KINDS = ("circle", "triangle", "rectangle", "pentagon")
@@ -140,3 +140,19 @@ def test_seen_shares_by_hand():
     assert seen_shares(square, below)[0] == pytest.approx(0.54, abs=0.03)
     half = pk.Circle((0, 0), 0.1).outline(100)[:50]
     assert seen_shares(pk.Circle((0, 0), 0.1), half)[0] == pytest.approx(0.53, abs=0.03)
+
+
+def test_every_fitted_number_has_its_price():
+    """The cost by hand: each parameter costs the logarithm of how far the points narrow it down."""
+    three, five = _cost(-100.0, 6, 200, 0.001), _cost(-100.0, 10, 200, 0.001)
+    assert three == pytest.approx(200 + 6 * np.log(200 / (2 * np.pi) * (1 + 10**2)))
+    assert five - three == pytest.approx(4 * np.log(200 / (2 * np.pi) * 101))
+    assert _cost(-90.0, 6, 200, 0.001) == pytest.approx(three - 20)
+
+
+def test_more_sides_lie_closer_but_do_not_win():
+    """On noisy triangles a fit with more sides has the smaller residuals; its price decides against it."""
+    triangle = pk.Polygon([(-0.1, -0.06), (0.1, -0.06), (0.0, 0.1)])
+    for seed in range(10):
+        points = triangle.outline(200) + np.random.default_rng(seed).normal(0, 0.003, (200, 2))
+        assert measure_shape(points, 0.003, rng=0).kind == "triangle"

@@ -135,3 +135,13 @@ def test_truncated_cost_by_hand():
     square = Outlines(np.arange(4)[None] * np.pi / 2, np.full((1, 4), 0.1))
     points = np.array([(0.1, 0.0), (0.103, 0.0), (0.0, 0.0)])
     assert truncated_cost(points, square, 0.01)[0] == pytest.approx(0.003**2 + 0.01**2)
+
+
+def test_points_out_of_reach_do_not_count():
+    """A row of strays beside a side would pull it; beyond the reach they do not."""
+    square = Outlines(np.arange(4)[None] * np.pi / 2, np.full((1, 4), 0.1))
+    ring = pk.Polygon([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)]).outline(160)
+    beside = np.column_stack([np.full(30, 0.13), np.linspace(-0.09, 0.09, 30)])
+    points = np.vstack([ring, beside])
+    assert refine_hard(points, square, 0.01).offsets[0].round(6).tolist() == [0.1] * 4
+    assert refine_hard(points, square, 0.05).offsets[0, 0] > 0.105

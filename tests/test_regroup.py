@@ -79,3 +79,22 @@ def test_the_margin_says_how_close_another_grouping_came():
     groups, margins = regroup.regrouped(groups_of(left, CIRCLE.outline(150)), LEAST_SPREAD)
     assert len(groups) == 2
     assert all(m > 10 for m in margins)
+
+
+def test_pieces_on_one_hull_that_no_shape_explains_stay_two():
+    """Three sides of a rectangle and half a circle make a convex outline together, but none of the shapes."""
+    box = pk.Polygon([(-0.2, -0.05), (-0.05, -0.05), (-0.05, 0.05), (-0.2, 0.05)]).outline(250)
+    arc = pk.Circle((0.0, 0.0), 0.05).outline(160)
+    pieces = groups_of(box[box[:, 0] < -0.052], arc[arc[:, 0] > 0.0])
+    assert kinds(regrouped(pieces, LEAST_SPREAD)) == ["circle", "rectangle"]
+
+
+def test_a_last_piece_joins_an_outline_that_is_nearly_closed():
+    ring = pk.Circle((0, 0), 0.08).outline(240)
+    assert kinds(regrouped(groups_of(ring[:218], ring[224:236]), LEAST_SPREAD)) == ["circle"]
+
+
+def test_strays_in_a_group_do_not_split_it():
+    ring, rng = pk.Circle((0, 0), 0.08).outline(160), np.random.default_rng(0)
+    (group,) = regrouped(groups_of(np.vstack([ring, rng.uniform(-0.07, 0.07, (40, 2))])), LEAST_SPREAD)
+    assert group.shape.kind == "circle"
