@@ -43,6 +43,8 @@ def as_points(points: ArrayLike | Iterable[Any], name: str = "points") -> NDArra
     >>> as_points([]).shape
     (0, 2)
     """
+    if hasattr(points, "points"):  # a Grid or Scans, handed in whole
+        raise ValueError(f"{name} must be an (N, 2) array, got a {type(points).__name__}; did you mean its points()?")
     try:
         array = _as_floats(points)
     except (TypeError, ValueError, OverflowError):
@@ -129,6 +131,30 @@ def _as_floats(values: Any) -> NDArray[np.float64]:
     if array.dtype.kind in "USc":
         raise TypeError  # numpy would read "1.5" as a number, and drop the imaginary part of a complex one
     return np.asarray(array, dtype=float)
+
+
+def as_rng(rng: Any) -> np.random.Generator:
+    """Return a random generator from a seed or a generator, or say in one sentence what is wrong.
+
+    >>> as_rng(7).integers(100) == as_rng(7).integers(100)
+    np.True_
+    """
+    try:
+        return np.random.default_rng(rng)
+    except (TypeError, ValueError):
+        raise ValueError(f"rng must be a whole number >= 0 or a numpy Generator, got {short(rng)}") from None
+
+
+def check_type(value: Any, kind: type | tuple[type, ...], rule: str) -> None:
+    """Refuse a value of another type in one sentence: ``rule`` says what it must be.
+
+    >>> check_type(3, str, "name must be a text")
+    Traceback (most recent call last):
+        ...
+    ValueError: name must be a text, got int
+    """
+    if not isinstance(value, kind):
+        raise ValueError(f"{rule}, got {type(value).__name__}")
 
 
 def short(value: Any) -> str:

@@ -12,7 +12,8 @@ dimension that hangs on a side that was never seen.
 
 Two things make a side uncertain. Noise is drawn anew for every point and averages out: ``spread / sqrt(N)``. The
 grid's cells do not where a side runs along them: a wall at x = 0.1234 m falls into the cells at 0.1235 m from one
-end to the other, and no number of points tells. A turned side crosses many cells, and the error averages out too.
+end to the other, and no number of points tells. A turned side crosses many cells, and the error averages out too;
+without noise even faster than is stated here, so that the deviations are then an upper bound.
 
 Sources: propagation of errors through the least-squares fit, as in any text on it; for points of doubtful side Louis
 (1982), "Finding the observed information matrix when using the EM algorithm".
@@ -25,14 +26,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .explain import SIGMAS
 from .outlines import Outlines
 from .refine import shares
 from .shapes import Circle
 
 Floats = NDArray[np.float64]
 
-CELL = 0.001  # m: side of the grid's cells
+CELL = 0.001  # m: side of the grid's cells, as in the paper; all that follows supposes points on such a grid
 CELL_STD = CELL / 12**0.5  # m: a cell's centre lies evenly within half a cell of the point
+# No sensor brings the spread [m] below this: a third more, because neighbours along a side err together.
+LEAST_SPREAD = 1.33 * CELL_STD
 
 # A side was seen when so many points lie on it, over such a length [m], and not near a corner, where they may as well
 # belong to the neighbour: a line over a hidden side touches the last points of both neighbours.
@@ -97,7 +101,7 @@ def sides_seen(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bo
     seen = []
     for side in range(r.shape[1]):
         others = np.delete(r, side, axis=1)
-        own = (np.abs(r[:, side]) <= 3 * spread) & (others < -CORNER_SPREADS * spread).all(axis=1)
+        own = (np.abs(r[:, side]) <= SIGMAS * spread) & (others < -CORNER_SPREADS * spread).all(axis=1)
         stretch = np.ptp(t[own, side]) if own.any() else 0.0
         seen.append(np.count_nonzero(own) >= LEAST_ON_SIDE and stretch >= LEAST_STRETCH)
     return np.array(seen)

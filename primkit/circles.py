@@ -33,7 +33,7 @@ Method = Literal["kasa", "pratt", "taubin", "geometric"]
 
 # Points whose circle is more than this many times wider than they are spread lie on a line, as far as one can tell.
 FLAT = 1e4
-STEPS = 50  # Gauss-Newton settles within about five steps; fifty is a safe end
+STEPS = 50  # Gauss-Newton settles within five steps at 1 % noise, within some fifteen at 10 %
 
 
 def fit_circle(points: ArrayLike, method: Method = "geometric", *, weights: ArrayLike | None = None) -> Circle | None:

@@ -29,7 +29,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from .arguments import ROUNDING, as_positive
+from .arguments import ROUNDING, as_positive, check_type
 from .measure import Detection
 from .paper import published_values
 from .shapes import Circle, Polygon, Shape
@@ -215,6 +215,8 @@ def evaluate(
     >>> evaluate([], World()).weighted_accuracy
     1.0
     """
+    check_type(world, World, "world must be a World, as in evaluate(found, world)")
+    check_type(found, Iterable, "found must be a list of detections or shapes, as in evaluate(found, world)")
     tolerance, gate = as_positive(tolerance, "tolerance", zero=True), as_positive(gate, "gate", zero=True)
     shapes = [_as_shape(item) for item in found]
     if protocol == "fair":
@@ -235,7 +237,9 @@ def evaluate(
     )
 
 
-def match(found: Sequence[Shape], true: Sequence[Shape], gate: float = GATE) -> list[tuple[int, int]]:
+def match(
+    found: Iterable[Detection | Shape], true: Iterable[Detection | Shape], gate: float = GATE
+) -> list[tuple[int, int]]:
     """Return pairs (index found, index true) with the least total centre distance, in the order of the true.
 
     As many pairs as possible are made, each with its centres at most ``gate`` metres apart.
@@ -256,9 +260,10 @@ def match(found: Sequence[Shape], true: Sequence[Shape], gate: float = GATE) -> 
     from scipy.optimize import linear_sum_assignment
 
     gate = as_positive(gate, "gate", zero=True)
-    if not found or not true:
+    ours, theirs = [_as_shape(item) for item in found], [_as_shape(item) for item in true]
+    if not ours or not theirs:
         return []
-    offset = np.array([f.centroid for f in found])[:, None] - np.array([t.centroid for t in true])
+    offset = np.array([f.centroid for f in ours])[:, None] - np.array([t.centroid for t in theirs])
     distance = np.hypot(offset[..., 0], offset[..., 1])
     allowed = distance <= gate + ROUNDING
     # A pair that is not allowed costs more than all allowed pairs together: none of them is given up for it.

@@ -10,8 +10,8 @@ Out: ``Candidate`` explanations, the best first.
 >>> ranked[0].kind, ranked[0].cost < ranked[1].cost
 ('circle', True)
 
-Source: the criterion is the evidence, MacKay (1992), "Bayesian interpolation". Where the points narrow each number
-down no farther than to the noise of one of them, it is BIC, Schwarz (1978), "Estimating the dimension of a model".
+Source: the criterion is the evidence, MacKay (1992), "Bayesian interpolation". It is a relative of the BIC of Schwarz
+(1978), "Estimating the dimension of a model", which leaves out how much was known beforehand.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from .arguments import as_rng
 from .circles import find_circle, fit_circle
 from .guess import guess_outlines, guess_rectangles, line_guesses
 from .lines import find_lines
@@ -37,9 +38,11 @@ MOST_RADIUS = 0.25  # m: a larger circle than a quarter of the board is a wall
 LEAST_ARC = np.radians(60)  # a shorter arc fits a wide range of circles
 GAP = 0.012  # m: a stretch of outline within this of a point counts as seen
 
+STEPS_PER_SIDE = 50  # a side is looked at in so many places, a circle in four times as many
+
 CIRCLE_TRIALS = 100  # with four fifths of the points on the circle, one sample in two is clean
-CIRCLE_ROUNDS = 4
-WALL_TRIALS = 100
+CIRCLE_ROUNDS = 4  # after two, hardly a point changes its weight
+WALL_TRIALS = 100  # a wall has nearly all points on it, or it is none
 STARTS_KEPT = 5  # of the guesses, those closest to the points are refined
 WIDER = 0.005  # m: guesses are judged with a longer reach than fits, because they still lie beside the points
 # What is supposed before the points are looked at. Each number of a shape is known to about a centimetre. An outline
@@ -91,14 +94,14 @@ def seen_shares(shape: Shape, points: Floats, gap: float = GAP) -> tuple[float, 
     >>> from primkit.shapes import Polygon
     >>> square = Polygon([(0, 0), (0.1, 0), (0.1, 0.1), (0, 0.1)])
     >>> [round(share, 1) for share in seen_shares(square, np.array([(0.0, 0.05), (0.05, 0.0)]))]
-    [0.3, 0.0, 0.0, 0.3]
+    [0.2, 0.0, 0.0, 0.2]
     """
     from scipy.spatial import cKDTree
 
     if isinstance(shape, Circle):
-        stretches = [shape.outline(120)]
+        stretches = [shape.outline(4 * STEPS_PER_SIDE)]
     else:
-        steps = (np.arange(30) + 0.5)[:, None] / 30
+        steps = (np.arange(STEPS_PER_SIDE) + 0.5)[:, None] / STEPS_PER_SIDE
         stretches = [corner + steps * edge for corner, edge in zip(shape.vertices, shape.edges, strict=True)]
     if len(points) == 0:
         return (0.0,) * len(stretches)
@@ -125,24 +128,27 @@ def candidates(
     Returns
     -------
     list of Candidate
-        A wall, a circle, and polygons of three to five sides, as far as each can be fitted. Those that come
-        near the best are fitted to the last digit.
+        A wall, a circle, and polygons of three to five sides, as far as each can be fitted; empty for fewer
+        than eight different points. Those that come near the best are fitted to the last digit; the others'
+        costs are a lower bound, in which what was not seen has no price.
     """
     if len(np.unique(points, axis=0)) < LEAST_POINTS:
         return []
     middle = points.mean(axis=0)
     local = points - middle  # digits are not lost far from the origin
-    rough = _rough(local, spread, np.random.default_rng(rng))
-    limit = min(c.cost for c in rough) + CONTENDER
-    ranked = [_polished(local, c, spread, soft) if c.cost <= limit else c for c in rough]
-    return [_moved(c, middle) for c in sorted(ranked, key=lambda c: c.cost)]
+    waiting = sorted(_rough(local, spread, as_rng(rng)), key=lambda c: c.cost)
+    done: list[Candidate] = []
+    while waiting and waiting[0].cost <= min((c.cost for c in done), default=np.inf) + CONTENDER:
+        polished = _polished(local, waiting.pop(0), spread, soft)
+        done += [] if polished is None else [polished]
+    return [_moved(c, middle) for c in sorted(done + waiting, key=lambda c: c.cost)]
 
 
 def _rough(points: Floats, spread: float, rng: np.random.Generator) -> list[Candidate]:
-    """Return the explanations that RANSAC and a few rounds of giving points back lead to, unseen stretches unpriced."""
+    """Return the explanations that RANSAC and a few rounds of giving points back lead to, in any order."""
     circle_rng, line_rng, wall_rng = rng.spawn(3)
     reach = SIGMAS * spread
-    found = [_wall(points, spread, wall_rng)]
+    found = _walls(points, spread, wall_rng)
     circle = find_circle(points, reach, trials=CIRCLE_TRIALS, rng=circle_rng)
     if circle is not None and circle.radius <= MOST_RADIUS:
         found.append(_judged(points, circle, False, spread))
@@ -162,31 +168,32 @@ def _rough(points: Floats, spread: float, rng: np.random.Generator) -> list[Cand
     return found
 
 
-def _wall(points: Floats, spread: float, rng: np.random.Generator) -> Candidate:
-    """Explain the points by one straight wall: its line and its two ends; its back is not seen."""
-    best = find_lines(points, SIGMAS * spread, most=1, trials=WALL_TRIALS, rng=rng)[0]
-    length = float(np.ptp(points[best.inliers] @ best.line.direction))
-    fit = _log_likelihood(best.line.signed_distance(points), spread)
-    return Candidate(None, False, _cost(fit, 4, len(points), spread) + UNSEEN_COST * length)
+def _walls(points: Floats, spread: float, rng: np.random.Generator) -> list[Candidate]:
+    """Explain the points by one straight wall: its line and its two ends; its back was not seen."""
+    found = []
+    for best in find_lines(points, SIGMAS * spread, most=1, trials=WALL_TRIALS, rng=rng):
+        length = float(np.ptp(points[best.inliers] @ best.line.direction))
+        fit = _log_likelihood(best.line.signed_distance(points), spread)
+        found.append(Candidate(None, False, _cost(fit, 4, len(points), spread) + UNSEEN_COST * length))
+    return found
 
 
-def _polished(points: Floats, rough: Candidate, spread: float, soft: bool) -> Candidate:
-    """Fit a candidate to the last digit, and price what was not seen of its outline."""
+def _polished(points: Floats, rough: Candidate, spread: float, soft: bool) -> Candidate | None:
+    """Fit a candidate to the last digit, and price what was not seen of its outline; None for a circle that is none."""
     figure = rough.figure
     if isinstance(figure, Outlines) and soft:
-        settled = refine_soft(points, figure, spread, square=rough.square)
-        figure = settled if settled.sound()[0] else figure
+        figure = refine_soft(points, figure, spread, square=rough.square)
     elif isinstance(figure, Circle):
         figure = _polished_circle(points, figure, spread)
         if figure is None:
-            return Candidate(None, False, float("inf"))
+            return None
     if figure is None:
         return rough
     shape = figure.polygon() if isinstance(figure, Outlines) else figure
     seen = seen_shares(shape, points[np.abs(shape.signed_distance(points)) <= SIGMAS * spread])
     lengths = shape.sides if isinstance(shape, Polygon) else np.array([shape.perimeter])
-    if isinstance(shape, Circle) and 2 * np.pi * seen[0] < LEAST_ARC:
-        return Candidate(None, False, float("inf"))
+    if isinstance(shape, Circle) and seen[0] < 1 and 2 * np.pi * seen[0] - 2 * GAP / shape.radius < LEAST_ARC:
+        return None
     judged = _judged(points, figure, rough.square, spread)
     return replace(judged, cost=judged.cost + UNSEEN_COST * float(lengths @ (1 - np.array(seen))))
 
@@ -215,8 +222,9 @@ def _judged(points: Floats, figure: Circle | Outlines, square: bool, spread: flo
 def _cost(log_likelihood: float, n_params: int, n_points: int, spread: float) -> float:
     """Return -2 times the logarithm of the evidence (Laplace's approximation; MacKay, 1992).
 
-    Each number that is fitted costs the logarithm of how far the points narrow it down: from ``PRIOR_WIDTH``
-    before to ``spread / sqrt(N)`` after.
+    cost = -2 ln L + q ln(N / (2 pi) (1 + w^2 / s^2)) for q fitted numbers, N points, the spread s and the
+    width w of what was known of each number beforehand, ``PRIOR_WIDTH``. A number costs the logarithm of how
+    far the points narrow it down, from w to s / sqrt(N); the 1 keeps the price up where s is larger than w.
     """
     narrowed = n_points / (2 * np.pi) * (1 + (PRIOR_WIDTH / spread) ** 2)
     return float(-2 * log_likelihood + n_params * np.log(narrowed))

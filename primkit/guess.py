@@ -27,9 +27,9 @@ Floats = NDArray[np.float64]
 
 LINES_TRIED = 7  # five sides at most, and two for luck
 LINE_TRIALS = 200  # a side with an eighth of the points is drawn with 95 % certainty
-CLOSING_LINES = 3
+CLOSING_LINES = 3  # seldom are more than two sides hidden
 CLOSING_LENGTH = 0.012  # m: a shorter stretch of the hull is the usual distance between points
-SUBSETS_KEPT = 4
+SUBSETS_KEPT = 4  # the right set is among the first where RANSAC found all sides
 QUARTERS = np.arange(4) * (np.pi / 2)
 # The frame is drawn in by a twentieth of the points, to lie in the sides and not around them; and once not at all, for
 # sides that were not seen: they lie where the seen ones end.
@@ -38,7 +38,7 @@ SECTOR_TURNS = 4  # each turned by a quarter of a sector
 
 
 def guess_outlines(points: Floats, sides: Outlines, k: int, reach: float) -> Outlines:
-    """Return guesses of outlines with k sides, the most likely first.
+    """Return guesses of outlines with k sides: the best sets of lines first, then the sectors.
 
     Parameters
     ----------
@@ -108,18 +108,18 @@ def _widest_gap(points: Floats, line: Line, reach: float) -> float:
     return float(np.diff(np.sort(near @ line.direction)).max(initial=0.0))
 
 
-def _best_subsets(points: Floats, sides: Outlines, k: int, reach: float, most: int = SUBSETS_KEPT) -> Outlines:
+def _best_subsets(points: Floats, sides: Outlines, k: int, reach: float) -> Outlines:
     """Return the sets of k lines whose outline lies closest to the points."""
     subsets = np.array(list(combinations(range(sides.angles.shape[1]), k)), dtype=int).reshape(-1, k)
     outlines = Outlines(sides.angles[0, subsets], sides.offsets[0, subsets])
     sound = outlines.sound()
     outlines, subsets = outlines[sound], subsets[sound]
-    r = sides.distances(points)[0]
+    r = sides.distances(points)[0]  # the sets share their lines: each line's distances are taken once
     farthest_out = np.full((len(points), len(subsets)), -np.inf)
     for column in subsets.T:
         np.maximum(farthest_out, r[:, column], out=farthest_out)
     cost = (np.minimum(np.abs(farthest_out), reach) ** 2).sum(axis=0)
-    return outlines[np.argsort(cost, kind="stable")[:most]]
+    return outlines[np.argsort(cost, kind="stable")[:SUBSETS_KEPT]]
 
 
 def _sectors(points: Floats, k: int) -> Outlines:

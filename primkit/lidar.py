@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import as_count, as_poses, as_positive
+from .arguments import as_count, as_poses, as_positive, as_rng, check_type
 from .raycast import cast
 from .world import World
 
@@ -181,10 +181,12 @@ def scan(
     >>> float(scan(World([near, far]), [(0, 0, 0)]).ranges[0, 0])
     inf
     """
+    check_type(world, World, "world must be a World, as in scan(world, poses)")
     lidar = Lidar() if lidar is None else lidar
+    check_type(lidar, Lidar, "lidar must be a Lidar, such as Lidar()")
     poses = as_poses(poses)
     ranges, inside = cast(world, poses, lidar.angles, lidar.range_max, lidar.range_min)
-    _disturb(ranges, lidar, np.random.default_rng(rng))
+    _disturb(ranges, lidar, as_rng(rng))
     ranges[inside] = np.inf
     return Scans(poses, lidar.angles, ranges, inside)
 

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import as_count, as_points, as_positive
+from .arguments import as_count, as_points, as_positive, as_rng
 from .ransac import Consensus, Model, run_ransac
 
 Floats = NDArray[np.float64]
@@ -147,7 +147,7 @@ def find_lines(
     >>> find_lines([], threshold=0.005)
     []
     """
-    points, rng = as_points(points), np.random.default_rng(rng)
+    points, rng = as_points(points), as_rng(rng)
     threshold, most = as_positive(threshold, "threshold", zero=True), as_count(most, "most", least=0)
     if not 0 <= left_over <= 1:
         raise ValueError(f"left_over must be between 0 and 1, got {left_over:g}")

@@ -19,15 +19,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arguments import as_points, as_positive
-from .certainty import certainty
+from .certainty import LEAST_SPREAD, certainty
 from .explain import SIGMAS, Candidate, candidates, seen_shares
 from .shapes import Kind, Shape
 
 Floats = NDArray[np.float64]
 
-# A cell's centre lies evenly within half a cell of the point itself: a standard deviation of 1 mm / sqrt(12), and
-# a third more because neighbours along a side err together. No sensor brings the spread [m] below this.
-LEAST_SPREAD = 1.33 * 0.001 / 12**0.5
 NEIGHBOURS = 10  # enough for a line with its spread, few enough for a curve to be straight
 
 
@@ -45,7 +42,8 @@ class Detection:
         Root mean square distance of those points from the outline, metres.
     margin : float
         How much better this shape explains the points than the best of another kind: twice the logarithm
-        of the Bayes factor; above 10 is very strong (Kass and Raftery, 1995). Infinite without a rival.
+        of the Bayes factor; above 10 is very strong (Kass and Raftery, 1995). Infinite without a rival; NaN
+        from ``PAPER``, which does not ask. So is the next.
     count_margin : float
         How clear it is that this is one shape of its own: how much better that explains the points than the
         best grouping in which it is split, or merged with a neighbour, on the same scale. Infinite when no
@@ -53,17 +51,18 @@ class Detection:
     seen : tuple of float
         The share of each side (or of the whole circle) that has points near it, 0 to 1.
     center_std : tuple of float
-        Standard deviations of the centroid's x and y, metres; infinite when part of the shape was not seen.
+        Standard deviations of the centroid's x and y, metres; infinite when a side was never seen. Like the
+        next, it supposes points on cells of 1 mm; empty from ``PAPER``, which does not ask.
     dimension_std : tuple of float
         Standard deviation of each of ``shape.dimensions``, metres; infinite for one that was not measured,
-        because a side that it hangs on was never seen. Empty from ``PAPER``, which does not ask.
+        because a side that it hangs on was never seen.
     """
 
     shape: Shape
     points: Floats
     rms: float
-    margin: float = float("inf")
-    count_margin: float = float("inf")
+    margin: float = float("nan")
+    count_margin: float = float("nan")
     seen: tuple[float, ...] = ()
     center_std: tuple[float, ...] = ()
     dimension_std: tuple[float, ...] = ()
@@ -96,7 +95,7 @@ def measure_shape(
     Returns
     -------
     Detection or None
-        None when there are fewer than eight points, or a bare wall explains them as well.
+        None when there are fewer than eight different points, or a bare wall explains them as well.
 
     Raises
     ------
@@ -117,7 +116,7 @@ def measure_shape(
 def as_detection(points: Floats, ranked: list[Candidate], spread: float) -> Detection | None:
     """Return the best candidate with those of the points that lie on it; None when it is no shape."""
     best = ranked[0] if ranked else None
-    if best is None or best.figure is None or best.shape is None:
+    if best is None or best.figure is None or best.shape is None:  # the last only for the type checker's sake
         return None
     rival = next((other.cost for other in ranked if other.kind != best.kind), float("inf"))
     found = detection(best.shape, points, SIGMAS * spread)
@@ -134,7 +133,7 @@ def spread_of(points: ArrayLike) -> float:
 
     Notes
     -----
-    A little low when the spread is larger than the distance between neighbours: half at 10 mm.
+    Too low when the spread is larger than the distance between neighbours: by a quarter to a third at 10 mm.
 
     Examples
     --------

@@ -24,10 +24,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import as_count, as_points, as_positive
-from .explain import SIGMAS
+from .arguments import as_count, as_points, as_positive, as_rng, check_type
+from .certainty import LEAST_SPREAD
 from .lines import find_lines
-from .measure import LEAST_SPREAD, Detection, detection, spread_of
+from .measure import Detection, detection, spread_of
 from .paper import measure_as_published
 from .regroup import Group, explained, regrouped
 from .segmentation import Grouping, check_count, segment
@@ -36,7 +36,7 @@ Floats = NDArray[np.float64]
 Memory = dict[tuple[bytes, float, int, bool], Group]  # groups as they were measured last, by their points
 
 SAME_SPREAD = 1.25  # fits are done anew when the spread comes out farther than this from what was supposed
-SPREAD_ROUNDS = 2
+SPREAD_ROUNDS = 2  # from the neighbours' estimate, a third low at most, two rounds get there
 
 
 @dataclass(frozen=True)
@@ -111,12 +111,13 @@ def find_shapes(
         Metres, in any order; ``Grid.points()``.
     n_shapes : int, optional
         How many shapes there are; found when it is not given. ``PAPER`` then takes K-Means' best silhouette.
+        Linking finds the number by itself: with it, and the published measuring, this is not used.
     settings : Settings
         ``ROBUST`` or ``PAPER``, or your own.
     memory : dict, optional
         For mapping while driving: hand in the same dictionary, empty at first, with every call, and the same
         seed as ``rng``. Groups whose points have not changed since the last call are not measured again; the
-        result is the same as without it.
+        result is the same as without it. ``PAPER`` has no use for it.
     rng : int or numpy.random.Generator, optional
         Seed or generator: the same seed gives the same shapes, to the last bit, for points in any order.
 
@@ -135,14 +136,16 @@ def find_shapes(
     >>> find_shapes([])
     []
     """
+    check_type(settings, Settings, "settings must be ROBUST, PAPER or Settings of your own")
     points = as_points(points)
     if n_shapes is not None:
         check_count(n_shapes, points)
     if len(points) == 0 or n_shapes == 0:
         return []
     points = points[np.lexsort((points[:, 1], points[:, 0]))]  # the order of seeing leaves no trace
-    group_rng, measure_rng = np.random.default_rng(rng).spawn(2)
-    labels = segment(points, n_shapes, method=settings.grouping, rng=group_rng)
+    group_rng, measure_rng = as_rng(rng).spawn(2)
+    asked = n_shapes if settings.grouping == "kmeans" else None
+    labels = segment(points, asked, method=settings.grouping, rng=group_rng)
     together = [points[labels == label] for label in range(labels.max() + 1)]
     if settings.method == "published":
         found = _as_published(together, settings, measure_rng)
@@ -165,8 +168,8 @@ def _jointly(
         return used[key]
 
     groups, spread = _explain_all(together, settings, explain)
-    margins = [float("inf")] * len(groups)
-    if settings.second_opinion:
+    margins = [float("nan")] * len(groups)
+    if settings.second_opinion or n_shapes is not None:
         groups, margins = regrouped(groups, spread, n_shapes, explain=partial(explain, spread=spread))
     memory.clear()  # what was not used now will not come again: a map only grows
     memory.update(used)
@@ -224,5 +227,5 @@ def _as_published(together: list[Floats], settings: Settings, rng: np.random.Gen
             cluster, len(lines), threshold=reach, trials=settings.circle_trials, rng=circle_rng
         )
         if shape is not None:
-            found.append(detection(shape, cluster, SIGMAS * reach))
+            found.append(detection(shape, cluster, reach))
     return found

@@ -26,7 +26,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import ROUNDING, as_count, as_points, as_positive
+from .arguments import ROUNDING, as_count, as_points, as_positive, as_rng, check_type
 
 Floats = NDArray[np.float64]
 
@@ -121,13 +121,14 @@ def run_ransac(
     >>> run_ransac([(0, 0), (0, 0)], LINE, threshold=0.01, rng=0) is None
     True
     """
+    check_type(model, Model, "model must be a Model, such as lines.LINE")
     points = as_points(points)
     threshold, trials = as_positive(threshold, "threshold", zero=True), as_count(trials, "trials")
     if score not in ("count", "truncated"):
         raise ValueError(f'score must be "count" or "truncated", got {score!r}')
     if len(points) < model.sample_size:
         return None
-    samples = draw_samples(len(points), model.sample_size, trials, np.random.default_rng(rng))
+    samples = draw_samples(len(points), model.sample_size, trials, as_rng(rng))
     candidates = model.from_samples(points[samples])
     candidates = candidates[np.isfinite(candidates).all(axis=1)]
     if len(candidates) == 0:
@@ -173,6 +174,8 @@ def trials_needed(inlier_share: float, sample_size: int, confidence: float = 0.9
     if not 0 < confidence < 1:
         raise ValueError(f"confidence must be between 0 and 1, got {confidence:g}")
     clean = inlier_share ** as_count(sample_size, "sample_size")
+    if clean == 0:
+        raise ValueError(f"inlier_share must be large enough to draw a clean sample at all, got {inlier_share:g}")
     if clean == 1:
         return 1
     return max(1, int(np.ceil(np.log1p(-confidence) / np.log1p(-clean))))

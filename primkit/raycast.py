@@ -24,7 +24,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import ROUNDING, as_poses
+from .arguments import ROUNDING, as_poses, check_type
 from .shapes import Circle, Polygon
 from .world import World
 
@@ -69,6 +69,7 @@ def cast_rays(world: World, poses: ArrayLike, angles: ArrayLike, range_max: floa
     >>> cast_rays(World(), [(0, 0, 0)], [0.0]).tolist()
     [[inf]]
     """
+    check_type(world, World, "world must be a World, as in cast_rays(world, poses, angles)")
     angles = np.asarray(angles, dtype=float)
     steps = np.diff(angles) if angles.ndim == 1 and np.isfinite(angles).all() else np.array([-1.0])
     if not ((steps > 0).all() and steps.sum() < 2 * np.pi):

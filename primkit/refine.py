@@ -34,9 +34,9 @@ GHOSTS, GHOST_AREA = 0.02, 0.05
 # a half of a circle would speak for whatever shape closes that half on the shortest way.
 OUTLINE_LENGTH = 0.5
 
-HARD_ROUNDS = 8
-SOFT_ROUNDS = 30
-SETTLED = 1e-7  # radians, and tenths of metres: a hundredth of what any sensor tells
+HARD_ROUNDS = 8  # nearly all settle in four or five
+SOFT_ROUNDS = 30  # shares settle slowly around blurred corners; what is left then is far below a cell
+SETTLED = 1e-7  # radians, and 1e-8 m: changes that no sensor tells
 
 
 def refine_hard(points: Floats, guess: Outlines, reach: float, *, square: bool = False) -> Outlines:
@@ -90,16 +90,18 @@ def refine_soft(points: Floats, guess: Outlines, spread: float, *, square: bool 
     Returns
     -------
     Outlines
-        The C outlines, settled; or as they were when one of them stopped being ``sound``.
+        The C outlines, settled; or as they were before one of them would have stopped being ``sound``.
     """
     for _ in range(SOFT_ROUNDS):
         refined = refit(points, shares(points, guess, spread)[0], guess, square=square)
+        if not refined.sound().all():
+            break
         change = max(
             float(np.abs(refined.angles - guess.angles).max()),
             10 * float(np.abs(refined.offsets - guess.offsets).max()),
         )
         guess = refined
-        if change <= SETTLED or not guess.sound().all():
+        if change <= SETTLED:
             break
     return guess
 

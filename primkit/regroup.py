@@ -36,12 +36,11 @@ from .shapes import Polygon, Shape
 
 Floats = NDArray[np.float64]
 Explain = Callable[[Floats], "Group"]
-Halves = dict[int, "tuple[Group, ...]"]  # what a group, by its id, would be split into
-Unions = dict[tuple[int, int], "Group | None"]  # what two groups, by their ids, would be merged into
 
 CLOSED = 0.9  # an outline seen on nine tenths of its length is no piece of another
 WELL_EXPLAINED = 0.9  # share of a group's points on its shape; with fewer, the group may be two
-MOST_ACROSS = 0.45  # m: the diagonal of the paper's largest rectangle; pieces farther apart are of two shapes
+MOST_ACROSS = 0.45  # m: the paper's largest rectangle is 0.424 m from corner to corner; wider pieces are of two shapes
+HULL_SPREADS, HULL_CELLS = 6.0, 0.002  # the hull runs along the outermost points: others lie up to so much inside [m]
 INSIDE_HULL = 0.05  # share of points that may lie inside a hull which should be an outline
 
 
@@ -76,6 +75,15 @@ class Group:
     def cost(self) -> float:
         """Cost of the best explanation; smaller is better. Too few points for any: each comes from nowhere."""
         return self.ranked[0].cost if self.ranked else float(-2 * len(self.points) * np.log(GHOSTS / GHOST_AREA))
+
+
+@dataclass(frozen=True)
+class _Tried:
+    """What was tried: how groups would split, what pairs would merge into, and by how much a group won."""
+
+    halves: dict[Group, tuple[Group, ...]]
+    unions: dict[tuple[Group, Group], Group | None]
+    won_by: dict[Group, float]
 
 
 def explained(points: Floats, spread: float, seed: int = 0, *, soft: bool = True) -> Group:
@@ -115,40 +123,39 @@ def regrouped(
         merged with a neighbour: twice the logarithm of the Bayes factor; infinite when none was in question.
     """
     explain = explain or partial(explained, spread=spread)
+    tried = _Tried({}, {}, {})
     groups = list(groups)
-    halves: Halves = {}
-    unions: Unions = {}
     if n_shapes is None or len(groups) < n_shapes:
-        groups = _split_all(groups, spread, n_shapes, explain, halves)
+        groups = _split_all(groups, spread, n_shapes, explain, tried)
     if n_shapes is None or len(groups) > n_shapes:
-        groups = _merge_all(groups, spread, n_shapes, explain, unions)
-    return groups, [_margin(g, groups, halves, unions) for g in groups]
+        groups = _merge_all(groups, spread, n_shapes, explain, tried)
+    return groups, [_margin(g, groups, tried) for g in groups]
 
 
-def _margin(group: Group, groups: list[Group], halves: Halves, unions: Unions) -> float:
-    """Return how much worse the best of the refused splits and mergers of a group is; infinite without any."""
-    refused = [_gain(halves.get(id(group), ()), group)]
-    for (a, b), union in unions.items():
-        if union is not None and id(group) in (a, b) and {a, b} <= {id(g) for g in groups}:
-            pair = [g for g in groups if id(g) in (a, b)]
-            refused.append(union.cost - sum(g.cost for g in pair))
-    return min(refused)
+def _margin(group: Group, groups: list[Group], tried: _Tried) -> float:
+    """Return how much worse the best other grouping of a group's points is; infinite when none was tried."""
+    others = [tried.won_by.get(group, float("inf")), _gain(tried.halves.get(group, ()), group)]
+    for (a, b), union in tried.unions.items():
+        if union is not None and group in (a, b) and a in groups and b in groups:
+            others.append(union.cost - a.cost - b.cost)
+    return min(others)
 
 
 def _split_all(
-    groups: list[Group], spread: float, n_shapes: int | None, explain: Explain, halves: Halves
+    groups: list[Group], spread: float, n_shapes: int | None, explain: Explain, tried: _Tried
 ) -> list[Group]:
-    """Split the group that gains most by it, again and again; enter what was tried into ``halves``."""
+    """Split the group that gains most by it, again and again."""
     limit = 0.0 if n_shapes is None else np.inf
     while n_shapes is None or len(groups) < n_shapes:
         for g in groups:
-            if id(g) not in halves:
-                halves[id(g)] = _halves(g, spread, n_shapes, explain)
-        best = min(groups, key=lambda g: _gain(halves[id(g)], g), default=None)
-        if best is None or not _gain(halves[id(best)], best) < limit:
+            if g not in tried.halves:
+                tried.halves[g] = _halves(g, spread, n_shapes, explain)
+        best = min(groups, key=lambda g: _gain(tried.halves[g], g), default=None)
+        if best is None or not _gain(tried.halves[best], best) < limit:
             break
-        at = groups.index(best)
-        groups = [*groups[:at], *halves[id(best)], *groups[at + 1 :]]
+        parts, at = tried.halves[best], groups.index(best)
+        groups = [*groups[:at], *parts, *groups[at + 1 :]]
+        tried.won_by.update(dict.fromkeys(parts, -_gain(parts, best)))
     return groups
 
 
@@ -175,22 +182,23 @@ def _share_on_shape(group: Group, spread: float) -> float:
 
 
 def _merge_all(
-    groups: list[Group], spread: float, n_shapes: int | None, explain: Explain, unions: Unions
+    groups: list[Group], spread: float, n_shapes: int | None, explain: Explain, tried: _Tried
 ) -> list[Group]:
-    """Merge the two groups that gain most by it, again and again; enter what was tried into ``unions``."""
+    """Merge the two groups that gain most by it, again and again."""
     while len(groups) > (n_shapes or 1):
         best, best_gain = None, 0.0 if n_shapes is None else np.inf
         for a, b in combinations(groups, 2):
-            if (id(a), id(b)) not in unions:
+            if (a, b) not in tried.unions:
                 plausible = n_shapes is not None or _may_be_one(a, b, spread)
-                unions[id(a), id(b)] = explain(np.vstack([a.points, b.points])) if plausible else None
-            one = unions[id(a), id(b)]
+                tried.unions[a, b] = explain(np.vstack([a.points, b.points])) if plausible else None
+            one = tried.unions[a, b]
             if one is not None and one.ranked and one.cost - a.cost - b.cost < best_gain:
                 best, best_gain = (a, b, one), one.cost - a.cost - b.cost
         if best is None:
             break
         a, b, one = best
         groups = [one if g is a else g for g in groups if g is not b]
+        tried.won_by[one] = -best_gain
     return groups
 
 
@@ -204,9 +212,8 @@ def _may_be_one(a: Group, b: Group, spread: float) -> bool:
     if a.closed and b.closed:
         return False
     points = np.vstack([a.points, b.points])
-    if np.ptp(points, axis=0).max() > MOST_ACROSS:
-        return False
     hull = shapely.MultiPoint(points).convex_hull
+    if 2 * shapely.minimum_bounding_radius(hull) > MOST_ACROSS:
+        return False
     depth = shapely.distance(hull.boundary, shapely.points(points))
-    # The hull runs along the outermost points: the others lie up to six spreads farther in.
-    return bool(np.mean(depth > 6 * spread + 0.002) <= INSIDE_HULL)
+    return bool(np.mean(depth > HULL_SPREADS * spread + HULL_CELLS) <= INSIDE_HULL)

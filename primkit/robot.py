@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .arguments import as_positive
+from .arguments import as_positive, check_type
 from .world import World
 
 STEP_X = 0.15  # m between way-points along x
@@ -64,11 +64,13 @@ def teleport_poses(world: World) -> NDArray[np.float64]:
     >>> len(teleport_poses(world)), skipped_waypoints(world).round(3).tolist()
     (76, [[0.1, 0.0, 0.0]])
     """
+    check_type(world, World, "world must be a World")
     poses = waypoints(world.size)
     return poses[~inside_shape(world, poses)]
 
 
 def skipped_waypoints(world: World) -> NDArray[np.float64]:
     """Return the way-points that lie inside a shape, shape (Q, 3); the robot is not set down there."""
+    check_type(world, World, "world must be a World")
     poses = waypoints(world.size)
     return poses[inside_shape(world, poses)]

@@ -23,7 +23,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import ROUNDING, as_count, as_points, as_positive
+from .arguments import ROUNDING, as_count, as_points, as_positive, as_rng
 
 Floats = NDArray[np.float64]
 Labels = NDArray[np.int64]
@@ -61,7 +61,8 @@ def segment(
     Raises
     ------
     ValueError
-        If points are not finite (N, 2), or more shapes are asked for than there are different points.
+        If points are not finite (N, 2), more shapes are asked for than there are different points,
+        or any number with linking.
 
     Examples
     --------
@@ -73,11 +74,13 @@ def segment(
         raise ValueError(f'method must be "kmeans" or "link", got {method!r}')
     if n_shapes is not None:
         check_count(n_shapes, points)
+        if method == "link":
+            raise ValueError(f'n_shapes must be None with method "link", which finds the number itself, got {n_shapes}')
     if len(points) == 0:
         return np.empty(0, dtype=np.int64)
     if method == "link":
         return link(points)
-    rng = np.random.default_rng(rng)
+    rng = as_rng(rng)
     return kmeans(points, count_by_silhouette(points, rng=rng) if n_shapes is None else n_shapes, rng=rng)
 
 
@@ -111,7 +114,7 @@ def kmeans(points: ArrayLike, k: int, *, rng: int | np.random.Generator | None =
 
     points = as_points(points)
     check_count(as_count(k, "k"), points, "k")
-    seed = int(np.random.default_rng(rng).integers(2**31))
+    seed = int(as_rng(rng).integers(2**31))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ConvergenceWarning)  # fewer groups than k: see the notes
         labels = KMeans(k, n_init=STARTS, random_state=seed).fit_predict(points)
@@ -138,7 +141,7 @@ def count_by_silhouette(
     """
     from sklearn.metrics import silhouette_score
 
-    points, rng = as_points(points), np.random.default_rng(rng)
+    points, rng = as_points(points), as_rng(rng)
     different = len(np.unique(points, axis=0))
     best, best_score = min(1, different), 0.5
     for k in range(2, min(as_count(most, "most"), different - 1) + 1):
@@ -164,7 +167,7 @@ def link(points: ArrayLike, reach: float = LINK, neighbours: int = LINK_NEIGHBOU
     Notes
     -----
     Finds groups of any form and needs no number, but splits an outline at an unseen stretch wider than
-    ``reach``, and joins two shapes that come closer than that.
+    ``reach``, and joins two shapes that come closer than that. Groups of fewer than eight points are strays.
 
     Examples
     --------

@@ -23,7 +23,7 @@ from typing import Literal
 
 import numpy as np
 
-from .arguments import as_count, as_positive, short
+from .arguments import as_count, as_positive, as_rng, short
 from .shapes import KINDS, Circle, Kind, Polygon, Shape
 
 # The paper's maps: one shape in each quadrant, near the quadrant's centre.
@@ -88,7 +88,7 @@ class World:
         return self._hash  # kept: the ray caster looks worlds up, and a world may have ten thousand shapes
 
     def least_gap(self) -> float:
-        """Return the least distance between two outlines in metres (below zero: they overlap).
+        """Return the least distance between two outlines in metres; zero or less when two meet.
 
         With fewer than two shapes it is infinite.
         """
@@ -153,7 +153,7 @@ def random_world(
     >>> random_world(0, rng=0).shapes
     ()
     """
-    rng = np.random.default_rng(rng)
+    rng = as_rng(rng)
     n = as_count(n, "n", least=0)
     gap, size = as_positive(gap, "gap", zero=True), as_positive(size, "size")
     if style not in ("paper", "free"):
@@ -174,6 +174,8 @@ def random_world(
 
 def _checked_kinds(kinds: Sequence[Kind] | None, n: int, rng: np.random.Generator) -> list[Kind]:
     """Return n kinds, drawn evenly when none are given."""
+    if isinstance(kinds, str):
+        raise ValueError(f"kinds must be a list of kinds, such as [{kinds!r}], got the text {kinds!r}")
     if kinds is None:
         return [KINDS[i] for i in rng.integers(len(KINDS), size=n)]
     if len(kinds) != n:
@@ -248,7 +250,7 @@ def free_shape(kind: Kind, center: np.ndarray, rng: np.random.Generator) -> Shap
         corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (width / 2, height / 2)
         return Polygon(corners + center).moved(angle=turn)
     n = 3 if kind == "triangle" else 5
-    while True:  # about every fourth draw has corners that can all be told apart
+    while True:  # every fourth triangle and every eighth pentagon has corners that can all be told apart
         bearings = turn + np.sort(rng.uniform(0, 2 * np.pi, n))
         radii = rng.uniform(0.06, 0.15) * rng.uniform(0.7, 1.0, n)
         corners = center + radii[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)])

@@ -70,15 +70,34 @@ def test_no_point_is_lost():
     assert sum(len(g.points) for g in after) == sum(len(g.points) for g in parts)
 
 
-def test_the_margin_says_how_close_another_grouping_came():
-    """Far pieces that were merged could be two; whole outlines leave no other grouping in question."""
+def test_the_margin_of_a_merger_is_what_it_gained():
+    """Two walls of a rectangle could be two things: what became one by merging says by how much."""
     points = RECTANGLE.outline(400)
-    left, right = points[points[:, 0] < -0.02], points[points[:, 0] > 0.02]
-    _, (margin,) = regroup.regrouped(groups_of(np.vstack([left, right])), LEAST_SPREAD, 1)
-    assert margin == float("inf")  # well explained: nothing else was tried
-    groups, margins = regroup.regrouped(groups_of(left, CIRCLE.outline(150)), LEAST_SPREAD)
-    assert len(groups) == 2
-    assert all(m > 10 for m in margins)
+    pieces = groups_of(points[points[:, 0] < -0.02], points[points[:, 0] > 0.02])
+    (one,), (margin,) = regroup.regrouped(pieces, LEAST_SPREAD)
+    assert margin == pytest.approx(sum(p.cost for p in pieces) - one.cost)
+    assert 0 < margin < float("inf")
+
+
+def test_the_margin_of_a_split_is_what_it_gained():
+    (whole,) = groups_of(np.vstack([RECTANGLE.outline(300), CIRCLE.outline(150)]))
+    parts, margins = regroup.regrouped([whole], LEAST_SPREAD)
+    gained = whole.cost - sum(p.cost for p in parts)
+    assert all(0 < margin <= gained for margin in margins)  # splitting a half once more may come closer
+
+
+def test_the_margin_of_what_stayed_apart_is_what_merging_would_have_cost():
+    box = pk.Polygon([(-0.2, -0.05), (-0.05, -0.05), (-0.05, 0.05), (-0.2, 0.05)]).outline(250)
+    arc = pk.Circle((0.0, 0.0), 0.05).outline(160)
+    pieces = groups_of(box[box[:, 0] < -0.052], arc[arc[:, 0] > 0.0])
+    (union,) = groups_of(np.vstack([p.points for p in pieces]))
+    _, margins = regroup.regrouped(pieces, LEAST_SPREAD)
+    assert margins == pytest.approx([union.cost - sum(p.cost for p in pieces)] * 2)
+
+
+def test_the_margin_is_infinite_where_no_other_grouping_came_into_question():
+    _, margins = regroup.regrouped(groups_of(RECTANGLE.outline(300), CIRCLE.outline(150)), LEAST_SPREAD)
+    assert margins == [float("inf")] * 2
 
 
 def test_pieces_on_one_hull_that_no_shape_explains_stay_two():

@@ -355,8 +355,7 @@ def test_turning_and_shifting_leaves_the_groups(angle, shift):
 # --- one door for both --------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("method", ["kmeans", "link"])
-@pytest.mark.parametrize("n_shapes", [None, 0])
+@pytest.mark.parametrize(("method", "n_shapes"), [("kmeans", None), ("kmeans", 0), ("link", None)])
 def test_no_points_have_no_labels(method, n_shapes):
     labels = segment([], n_shapes, method=method, rng=0)
     assert labels.shape == (0,)
@@ -376,7 +375,9 @@ def test_segment_finds_the_number_when_not_told():
 def test_segment_links_and_takes_no_number():
     points = np.vstack([THIN, SMALL])
     assert np.array_equal(segment(points, method="link"), link(points))
-    assert np.array_equal(segment(points, 5, method="link"), link(points))
+    sentence = 'n_shapes must be None with method "link", which finds the number itself, got 5'
+    with pytest.raises(ValueError, match=exactly(sentence)):
+        segment(points, 5, method="link")
 
 
 def test_segment_with_the_same_seed_gives_the_same_labels():
