@@ -53,11 +53,7 @@ def as_points(points: ArrayLike | Iterable[Any], name: str = "points") -> NDArra
         return np.empty((0, 2))
     if array.ndim != 2 or array.shape[1] != 2:
         raise ValueError(f"{name} must have shape (N, 2), got shape {array.shape}")
-    finite = np.isfinite(array).all(axis=1)
-    if not finite.all():
-        row = int(np.argmin(finite))
-        raise ValueError(f"{name} must be finite, got {tuple(array[row].tolist())} in row {row}")
-    return array
+    return _all_finite(array, name)
 
 
 def as_point(point: ArrayLike, name: str) -> NDArray[np.float64]:
@@ -118,10 +114,15 @@ def as_poses(poses: ArrayLike) -> NDArray[np.float64]:
     array = array.reshape(-1, 3) if array.size == 0 or array.shape == (3,) else array
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"poses must have shape (P, 3): x, y, heading; got shape {array.shape}")
+    return _all_finite(array, "poses")
+
+
+def _all_finite(array: NDArray[np.float64], name: str) -> NDArray[np.float64]:
+    """Return the array, or refuse it for its first row that is not finite."""
     finite = np.isfinite(array).all(axis=1)
     if not finite.all():
         row = int(np.argmin(finite))
-        raise ValueError(f"poses must be finite, got {tuple(array[row].tolist())} in row {row}")
+        raise ValueError(f"{name} must be finite, got {tuple(array[row].tolist())} in row {row}")
     return array
 
 
