@@ -48,8 +48,7 @@ __all__ = list(_HOME)
 def __getattr__(name: str) -> Any:
     if name not in _HOME:
         raise AttributeError(f"module 'primkit' has no attribute {name!r}")
-    # Kept in the module's namespace: the next use is an ordinary look-up. A submodule of the same name (ransac,
-    # segment...) would be set there by the import system: the function is what the user asked for.
+    # Kept in the module's namespace: the next use is an ordinary look-up.
     value = getattr(import_module(f"primkit.{_HOME[name]}"), name)
     globals()[name] = value
     return value

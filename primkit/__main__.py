@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 from . import __version__
+from .bench import command as benches
 
 if TYPE_CHECKING:
     from .evaluation import Report
@@ -55,6 +56,11 @@ examples:
 
 Once stopped, a study continues when the same command is given again: finished maps
 are in journal.jsonl. --fresh starts anew.
+"""
+ACCURACY_EXAMPLES = """\
+examples:
+  primkit accuracy --maps 20             a first look: five minutes on two cores
+  primkit accuracy --sweeps gap spurious --settings robust --maps 500
 """
 MAKE_EXAMPLES = """\
 examples:
@@ -181,51 +187,41 @@ def _known(found: Sequence[Detection]) -> list[dict[str, Any]]:
 
 def study(arguments: argparse.Namespace) -> None:
     """Map many boards with one method or both, print the tables, and write all numbers."""
-    from .formats import paper_suite, write_atomically
-    from .study import JOURNAL, METHODS, make_folder, rows_as_csv, run_study, tables
+    from .formats import paper_suite
+    from .study import JOURNAL, METHODS, make_folder, maps_in, n_rows, run_study, tables, write_tables
 
     wanted = {name: method for name, method in METHODS.items() if arguments.settings in ("both", name.lower())}
-    maps = paper_suite() if arguments.maps is None else _maps(arguments.maps)
+    maps = paper_suite() if arguments.maps is None else maps_in(arguments.maps)
     out = make_folder(arguments.out)
     journal = out / JOURNAL
     if arguments.fresh:
         journal.unlink(missing_ok=True)
-    before = _lines(journal)
-    try:
-        rows = run_study(maps, wanted, folder=out, jobs=arguments.jobs, seed=arguments.seed)
-    except KeyboardInterrupt:
-        raise KeyboardInterrupt(f"stopped; the same command continues, with what {journal} holds") from None
-    kept = len(rows) - (_lines(journal) - before)
+    before = n_rows(journal)
+    rows = run_study(maps, wanted, folder=out, jobs=arguments.jobs, seed=arguments.seed)
+    kept = len(rows) - (n_rows(journal) - before)
     made = tables(rows)
     for table in made:
         _say(f"{table}\n")
-
-    files = {f"{table.title.split('.')[0].lower().replace(' ', '-')}.csv": table.csv() for table in made}
-    for name, text in (files | {"rows.csv": rows_as_csv(rows)}).items():
-        write_atomically(out / name, text)
+    files = write_tables(out, made, rows)
     _say(f"Maps   {len(maps)} with {' and '.join(wanted)}; {kept} of {len(rows)} results were in the journal already")
-    _say(f"Wrote  {', '.join(str(out / name) for name in (*files, 'rows.csv', JOURNAL))}")
+    _say(f"Wrote  {', '.join(str(out / name) for name in (*files, JOURNAL))}")
     _say(f"Next   open {out / 'rows.csv'}: one line for each map and method, times included.")
 
 
-def _maps(paths: Sequence[Path]) -> dict[str, World]:
-    """Return the maps in files and folders, by the files' names without their endings."""
-    from .formats import MAP_ENDINGS, load_world
+def accuracy(arguments: argparse.Namespace) -> None:
+    """Change one thing at a time; print how right each method is, and write all numbers and a figure."""
+    from .plots import PANELS, plot_accuracy, save_figure
+    from .study import METHODS, AccuracyTable, accuracy_study, make_folder
 
-    files: list[Path] = []
-    for path in paths:
-        inside = sorted(p for p in path.iterdir() if p.suffix.lower() in MAP_ENDINGS) if path.is_dir() else [path]
-        if not inside:
-            raise ValueError(f"{path}: must hold maps ({' or '.join(MAP_ENDINGS)}), got none")
-        files += inside
-    maps = {file.stem: load_world(file) for file in files}
-    if len(maps) < len(files):
-        raise ValueError(f"maps must have different names, got {len(files)} files with {len(maps)} names")
-    return maps
-
-
-def _lines(path: Path) -> int:
-    return path.read_bytes().count(b"\n") if path.exists() else 0
+    wanted = {name: method for name, method in METHODS.items() if arguments.settings in ("both", name.lower())}
+    out, made, more = make_folder(arguments.out), [], {"seed": arguments.seed, "jobs": arguments.jobs}
+    for table in accuracy_study(arguments.sweeps, arguments.maps, out, settings=wanted, **more):
+        _say(f"{table}\n")
+        made.append(table)
+    if drawn := [table for table in made if isinstance(table, AccuracyTable) and table.sweep in PANELS]:
+        save_figure(plot_accuracy(drawn), out / "accuracy.png")
+    files = [*dict.fromkeys(table.file for table in made), *["accuracy.png"] * bool(drawn)]
+    _say(f"Wrote  {', '.join(str(out / name) for name in files)}")
 
 
 # --- primkit make-map ---------------------------------------------------------------------------------------
@@ -245,6 +241,12 @@ def make_map(arguments: argparse.Namespace) -> None:
     _say(f"Board  {_census(world)} (random: seed {arguments.seed}, {style} style, gap {arguments.gap:g} mm)")
     _say(f"Wrote  {arguments.out}")
     _say(f"Next   primkit map --map {arguments.out}")
+
+
+def bench(words: argparse.Namespace) -> None:
+    """Time primkit beside other tools, and print a table for each benchmark as it ends."""
+    for text in benches.texts(words.names, __version__, quick=words.quick, seed=words.seed, out=words.out):
+        _say(text)
 
 
 # --- words in -----------------------------------------------------------------------------------------------
@@ -274,7 +276,9 @@ def _parser() -> _Parser:
     for name, run, text, examples, options in (
         ("map", map_board, "simulate a board, map it, and compare with the truth", MAP_EXAMPLES, _map_options),
         ("study", study, "map many boards: the paper's Tables 1 and 2 beside ours", STUDY_EXAMPLES, _study_options),
+        ("accuracy", accuracy, "how right, against noise, shapes, scans, strays", ACCURACY_EXAMPLES, _accuracy_options),
         ("make-map", make_map, "write a random board to a GeoJSON file", MAKE_EXAMPLES, _make_map_options),
+        ("bench", bench, benches.TEXT, benches.EXAMPLES, partial(benches.add_options, whole=_whole)),
     ):
         description = f"{text[0].upper()}{text[1:]}."
         command = commands.add_parser(name, help=text, description=description, epilog=examples, **_LOOK)
@@ -296,11 +300,22 @@ def _study_options(parser: _Parser) -> None:
     parser.option(
         "--maps", "PATH", Path, None, "GeoJSON files, or folders of them", nargs="+", shown="the paper's 34 maps"
     )
-    _choice(parser, "--settings", ("both", "robust", "paper"), "the method: ours, as published, or both")
-    parser.option("--seed", "S", _whole, 0, "seed of the methods, a whole number")
-    parser.option("--jobs", "N", partial(_whole, least=1), -1, "number of processes", shown="one on each core")
+    _many_options(parser, "the methods", "tables and rows as CSV")
     parser.add_argument("--fresh", action="store_true", help="forget the journal of earlier runs")
-    parser.option("--out", "DIR", Path, Path("out"), "folder for the journal, and tables and rows as CSV")
+
+
+def _accuracy_options(parser: _Parser) -> None:
+    text = "any of suite, noise, shapes, scans, spurious, gap, remedies, partial"
+    parser.option("--sweeps", "NAME", str, None, text, nargs="+", shown="all")
+    parser.option("--maps", "N", partial(_whole, least=1), 100, "number of maps for each line, and of drives")
+    _many_options(parser, "maps and noise", "accuracy.csv, accuracy.png and partial.csv")
+
+
+def _many_options(parser: _Parser, seeded: str, files: str) -> None:
+    _choice(parser, "--settings", ("both", "robust", "paper"), "the method: ours, as published, or both")
+    parser.option("--seed", "S", _whole, 0, f"seed of {seeded}, a whole number")
+    parser.option("--jobs", "N", partial(_whole, least=1), -1, "number of processes", shown="one on each core")
+    parser.option("--out", "DIR", Path, Path("out"), f"folder for the journal, and {files}")
 
 
 def _make_map_options(parser: _Parser) -> None:
@@ -314,8 +329,7 @@ def _make_map_options(parser: _Parser) -> None:
 def _board_options(parser: _Parser) -> None:
     parser.option("--shapes", "N", _whole, None, "number of shapes on a board of 1 m x 1 m", shown=SHAPES)
     parser.option("--seed", "S", _whole, 7, "seed of all that is random, a whole number")
-    text = "paper: upright, at most 4 shapes; free: at any angle"
-    _choice(parser, "--style", ("paper", "free"), text, shown="paper")
+    _choice(parser, "--style", ("paper", "free"), "paper: upright, at most 4 shapes; free: at any angle", shown="paper")
 
 
 def _choice(parser: _Parser, name: str, words: Sequence[str], text: str, **more: Any) -> None:
@@ -345,12 +359,8 @@ def _number(word: str, most: float, rule: str) -> float:
     return number
 
 
-def _millimetres(word: str) -> float:
-    return _number(word, sys.float_info.max, "a number of millimetres >= 0")
-
-
-def _share(word: str) -> float:
-    return _number(word, 1.0, "a share from 0 to 1")
+_millimetres = partial(_number, most=sys.float_info.max, rule="a number of millimetres >= 0")
+_share = partial(_number, most=1.0, rule="a share from 0 to 1")
 
 
 # --- words out ----------------------------------------------------------------------------------------------

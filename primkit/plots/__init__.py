@@ -23,12 +23,14 @@ The rooms, each of which imports only those before it:
 ``pictures.py``  the board, a scan, the points, the clusters
 ``found.py``     the shapes that were found, over the truth
 ``story.py``     all of them in one figure, and the file it goes to
+``accuracy.py``  a study's accuracy against noise, shapes, scans and strays
 ===============  ==================================================
 
 Sources: the pictures are the paper's Figures 1 to 3; the colours are Okabe and Ito's (2008), "Color Universal Design",
 which colour-blind readers can tell apart.
 """
 
+from .accuracy import PANELS, plot_accuracy
 from .found import plot_found
 from .look import KIND_COLORS, KIND_MARKERS
 from .pictures import plot_clusters, plot_points, plot_scan, plot_world
@@ -41,7 +43,9 @@ __all__ = [
     "plot_clusters",
     "plot_found",
     "plot_story",
+    "plot_accuracy",
     "save_figure",
+    "PANELS",
     "KIND_COLORS",
     "KIND_MARKERS",
 ]

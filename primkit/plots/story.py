@@ -38,7 +38,7 @@ class Picture(Figure):
         return _png(self)
 
 
-def _plain() -> AbstractContextManager[None]:
+def plain() -> AbstractContextManager[None]:
     """Return a context with matplotlib's own settings: the story looks the same, whatever the user's are."""
     return matplotlib.style.context("default")
 
@@ -91,7 +91,7 @@ def plot_story(
     points = as_points(points)
     check_type("scans", scans, Scans)
     check_type("report", report, Report)
-    with _plain():
+    with plain():
         figure = Picture(figsize=(6.4, 5.0), layout="constrained")
         axes = figure.subplot_mosaic("ad;bd;cd", width_ratios=[1, 2.8])
         if len(scans):
@@ -106,11 +106,11 @@ def plot_story(
         figure.supxlabel(report.scores().replace(" = ", "\n= "), size=8)
         plot_found(found, world, axes["d"], report)
         set_title(axes["d"], f"d) {axes['d'].get_title(loc='left')}")
-        _freeze(figure)
+        freeze(figure)
     return figure
 
 
-def _freeze(figure: Figure) -> None:
+def freeze(figure: Figure) -> None:
     """Lay the figure out once and for all: else each drawing moves things by a hair, and its bytes change."""
     engine = figure.get_layout_engine()
     assert engine is not None
@@ -157,6 +157,6 @@ def save_figure(figure: Figure, path: StrPath) -> None:
 
 def _png(figure: Figure) -> bytes:
     buffer = io.BytesIO()
-    with _plain():
+    with plain():
         figure.savefig(buffer, format="png", dpi=DPI, metadata={"Software": None})  # a version would change the bytes
     return buffer.getvalue()

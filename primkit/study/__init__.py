@@ -1,4 +1,4 @@
-"""Study: many maps, many methods, in parallel; the paper's Tables 1 to 4 with ours beside them.
+"""Study: many maps, many methods, in parallel; the paper's tables, and what the sensor allows, with ours beside them.
 
 Beside the story: one map tells what a method can do, many tell how often.
 
@@ -14,36 +14,73 @@ Out: a ``Row`` for each map and method; from them ``Table``, which prints, shows
 The rooms, each of which imports only those before it:
 
 =================  ==========================================================
+``oracle.py``      the best that any method can do from the same points
+``row.py``         what became of one map with one method
 ``experiment.py``  one map, one method, one row
 ``journal.py``     rows written down one by one, so that a killed study continues
 ``many.py``        all of them, in parallel
 ``table.py``       a table with intervals as text, HTML and CSV
 ``published.py``   the paper's figures, and the tables that put ours beside them
+``estimate.py``    a figure with its 95 % interval
+``sweeps.py``      what the accuracy study changes, in which steps
+``accuracy.py``    how right each method is at each step, the oracle beside it
+``wander.py``      random drives among the shapes
+``views.py``       the shapes that a drive saw in part
+``partial.py``     how right, and how honest, what was measured of them is
+``together.py``    all of it, one after the other, and its files
 =================  ==========================================================
 
 Source: the paper's section 3.3, "Results".
 """
 
-from .experiment import Experiment, Row, Run, Score, perform, run
-from .journal import JOURNAL, make_folder
-from .many import METHODS, run_study
-from .published import PUBLISHED, rows_as_csv, tables
+from .accuracy import AccuracyLine, AccuracyTable, accuracy_as_csv, run_accuracy
+from .estimate import Estimate
+from .experiment import Experiment, Run, perform, run
+from .journal import JOURNAL, make_folder, n_rows
+from .many import METHODS, maps_in, run_study
+from .oracle import ORACLE, Oracle, oracle_fit, told_points
+from .partial import PartialLine, PartialTable, run_partial
+from .published import PUBLISHED, rows_as_csv, tables, write_tables
+from .row import Row, Score
+from .sweeps import REMEDIES, SWEEPS, UNTUNED
 from .table import Line, Table
+from .together import accuracy_study
+from .wander import wander
 
 __all__ = [
     "run_study",
     "tables",
     "rows_as_csv",
+    "write_tables",
     "Row",
     "Score",
     "Table",
     "Line",
     "METHODS",
     "PUBLISHED",
+    "run_accuracy",
+    "run_partial",
+    "accuracy_study",
+    "accuracy_as_csv",
+    "AccuracyTable",
+    "AccuracyLine",
+    "PartialTable",
+    "PartialLine",
+    "Estimate",
+    "SWEEPS",
+    "REMEDIES",
+    "UNTUNED",
+    "ORACLE",
+    "Oracle",
+    "told_points",
+    "oracle_fit",
+    "wander",
     "Experiment",
     "Run",
     "run",
     "perform",
     "JOURNAL",
     "make_folder",
+    "n_rows",
+    "maps_in",
 ]

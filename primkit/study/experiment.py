@@ -24,7 +24,7 @@ from __future__ import annotations
 import hashlib
 import json
 import sys
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -37,79 +37,16 @@ from numpy.typing import NDArray
 from ..evaluation import Report, evaluate
 from ..grid import Grid
 from ..lidar import Lidar, Scans, scan
-from ..measure import Detection
+from ..measure import Detection, detection
 from ..pipeline import Settings, find_shapes
 from ..robot import teleport_poses, waypoints
 from ..shapes import Circle, Kind
 from ..world import World
-
-Movement = Literal["automatic", "manual"]
+from .oracle import Oracle, oracle_fit, told_points
+from .row import Row, Score
 
 # Another version of these may draw or compute other numbers.
 LIBRARIES = ("numpy", "scipy", "scikit-learn", "shapely")
-
-
-@dataclass(frozen=True)
-class Score:
-    """The scores of one map, each from 0 to 1; ``weighted`` is the total."""
-
-    weighted: float
-    shape: float
-    center: float
-    dimension: float
-
-
-@dataclass(frozen=True)
-class Row:
-    """What became of one map with one method. Rows are equal when all but the measured time is.
-
-    Parameters
-    ----------
-    map, settings : str
-        The names of the map and of the method.
-    kinds : tuple of str
-        The kinds of the map's shapes.
-    movement : {"automatic", "manual"}
-        Set down on way-points, or driven.
-    tolerance : float
-        Of the fair protocol, in metres.
-    told : bool
-        Whether the method was told how many shapes there are.
-    n_found : int
-        How many shapes were found.
-    fair, paper : Score
-        Two-sided within the tolerance, and scored as published; see ``evaluate``.
-    center_errors, dimension_errors : tuple of float
-        found - true for each coordinate and dimension that can be compared, metres; paired fairly.
-    robot_time : float
-        Number of scans times the LiDAR's period, seconds.
-    computing_time : float
-        Filling the grid and finding the shapes, seconds on this machine.
-    """
-
-    map: str
-    settings: str
-    kinds: tuple[Kind, ...]
-    movement: Movement
-    tolerance: float
-    told: bool
-    n_found: int
-    fair: Score
-    paper: Score
-    center_errors: tuple[float, ...]
-    dimension_errors: tuple[float, ...]
-    robot_time: float
-    computing_time: float = field(compare=False)
-
-    @property
-    def n_shapes(self) -> int:
-        """How many shapes there are."""
-        return len(self.kinds)
-
-    @property
-    def count_right(self) -> bool:
-        """Whether as many shapes were found as there are."""
-        return self.n_found == self.n_shapes
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,8 +61,9 @@ class Experiment:
         The map.
     name : str
         The method's name.
-    settings : Settings
-        The method. The published one is told the number of shapes, the other finds it.
+    settings : Settings or Oracle
+        The method. The published one is told the number of shapes when it groups by K-Means, the others find
+        it; the oracle is told everything.
     lidar : Lidar
         The sensor.
     tolerance : float
@@ -139,7 +77,7 @@ class Experiment:
     map: str
     world: World
     name: str
-    settings: Settings
+    settings: Settings | Oracle
     lidar: Lidar = Lidar()  # noqa: RUF009 - frozen, so that sharing it is safe
     tolerance: float = 0.005
     seed: int = 0
@@ -221,6 +159,7 @@ def perform(experiment: Experiment) -> Row:
         dimension_errors=tuple(e for m in fair.matches for e in m.dimension_error or ()),
         robot_time=run_.robot_time,
         computing_time=run_.computing_time,
+        found_as=_found_as(fair, experiment.world),
     )
 
 
@@ -234,22 +173,41 @@ def run(experiment: Experiment) -> Run:
     """
     from threadpoolctl import threadpool_limits
 
-    world, settings, drive = experiment.world, experiment.settings, experiment.drive
+    world, drive = experiment.world, experiment.drive
     scan_rng, find_rng = experiment.rngs()
     poses = teleport_poses(world) if drive is None else drive
     scans = scan(world, poses, experiment.lidar, rng=scan_rng)
     with threadpool_limits(1):
-        _warm_up(settings.method)
+        _warm_up(experiment.settings.method)
         begun = perf_counter()
-        grid = Grid()
-        grid.add(scans)
-        points = grid.points()
-        # More shapes than points cannot be asked for, and a faulty sensor may see nearly nothing.
-        told = min(len(world.shapes), len(points)) if settings.method == "published" else None
-        found = find_shapes(points, told, settings=settings, rng=find_rng)
+        points, told, found = _find(experiment, scans, find_rng)
         computing_time = perf_counter() - begun
     robot_time = len(waypoints(world.size) if drive is None else drive) * experiment.lidar.period
     return Run(scans, points, told, found, robot_time, computing_time)
+
+
+def _find(
+    experiment: Experiment, scans: Scans, rng: np.random.Generator
+) -> tuple[NDArray[np.float64], int | None, list[Detection]]:
+    """Return the grid's points, the number of shapes that was told, and what the method found."""
+    world, settings = experiment.world, experiment.settings
+    if isinstance(settings, Oracle):
+        points, owners = told_points(world, scans, experiment.lidar)
+        fits = enumerate(oracle_fit(world, points, owners))
+        found = [detection(fit, points[owners[:, 0] == i], np.inf) for i, fit in fits if fit is not None]
+        return points, len(world.shapes), found
+    grid = Grid()
+    grid.add(scans)
+    points = grid.points()
+    # More shapes than points cannot be asked for, and a faulty sensor may see nearly nothing.
+    is_told = settings.method == "published" and settings.grouping == "kmeans"
+    told = min(len(world.shapes), len(points)) if is_told else None
+    return points, told, find_shapes(points, told, settings=settings, rng=rng)
+
+
+def _found_as(report: Report, world: World) -> tuple[Kind | None, ...]:
+    kinds = {id(match.true): match.found.kind for match in report.matches}
+    return tuple(kinds.get(id(shape)) for shape in world.shapes)
 
 
 def _score(report: Report) -> Score:
@@ -262,8 +220,10 @@ def _score(report: Report) -> Score:
 
 
 @cache
-def _warm_up(method: Literal["joint", "published"]) -> None:
+def _warm_up(method: Literal["joint", "published", "oracle"]) -> None:
     """Find a circle, so that a process's first time is not that of loading the libraries."""
+    if method == "oracle":
+        return
     quick = Settings(method=method, line_trials=1, circle_trials=1)
     find_shapes(Circle((0, 0), 0.06).outline(60), 1, settings=quick, rng=0)
 

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from ..formats import StrPath
-from .experiment import Row, Score
+from .row import Row, Score
 
 JOURNAL = "journal.jsonl"
 
@@ -78,6 +78,11 @@ def rows_in(file: BinaryIO) -> dict[str, Row]:
     return rows
 
 
+def n_rows(path: Path) -> int:
+    """Return how many rows the journal with this path holds; 0 when it is not there."""
+    return path.read_bytes().count(b"\n") if path.exists() else 0
+
+
 def append(file: BinaryIO | None, row: Row, key: str) -> None:
     """Write one row, and hand it to the system: a killed process loses nothing of it."""
     if file is not None:
@@ -87,5 +92,6 @@ def append(file: BinaryIO | None, row: Row, key: str) -> None:
 
 def _as_row(told: dict[str, Any]) -> Row:
     """Return a row from what JSON makes of it."""
-    lists = {name: tuple(told[name]) for name in ("kinds", "center_errors", "dimension_errors")}
+    told = {"found_as": (), **told}  # rows of earlier versions do not say it
+    lists = {name: tuple(told[name]) for name in ("kinds", "center_errors", "dimension_errors", "found_as")}
     return replace(Row(**{**told, **lists}), fair=Score(**told["fair"]), paper=Score(**told["paper"]))

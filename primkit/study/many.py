@@ -19,26 +19,31 @@ from __future__ import annotations
 
 import signal
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sized
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sized
 from contextlib import closing, contextmanager
-from typing import Any
+from pathlib import Path
+from typing import Any, TypeVar
 
 from numpy.typing import ArrayLike
 
 from ..arguments import as_count, as_poses, as_positive
-from ..formats import StrPath, paper_suite
+from ..formats import MAP_ENDINGS, StrPath, load_world, paper_suite
 from ..lidar import Lidar
 from ..pipeline import PAPER, ROBUST, Settings
 from ..world import World
-from .experiment import Experiment, Row, perform
-from .journal import append, open_journal
+from .experiment import Experiment, perform
+from .journal import JOURNAL, append, open_journal
+from .oracle import Oracle
+from .row import Row
+
+T = TypeVar("T")
 
 METHODS: Mapping[str, Settings] = {"PAPER": PAPER, "ROBUST": ROBUST}
 
 
 def run_study(
     worlds: Mapping[str, World] | Iterable[World] | None = None,
-    settings: Mapping[str, Settings] = METHODS,
+    settings: Mapping[str, Settings | Oracle] = METHODS,
     *,
     lidar: Lidar | None = None,
     tolerance: float = 0.005,
@@ -56,7 +61,8 @@ def run_study(
         The maps; the paper's 34 when not given. An iterable's are called "1", "2", and so on, and are drawn as
         they are needed: thousands need no more memory than a few.
     settings : dict of str to Settings
-        The methods by name. One with ``method="published"`` is told the number of shapes, the others find it.
+        The methods by name. The published one is told the number of shapes when it groups by K-Means, the others
+        find it. ``ORACLE`` is the fit that is told which point belongs to which side.
     lidar : Lidar, optional
         The sensor; the paper's by default. All methods get the same scans of a map.
     tolerance : float
@@ -97,18 +103,64 @@ def run_study(
         "seed": as_count(seed, "seed", least=0),
     }
     for chosen in settings.values():
-        _checked(chosen, Settings, "each of the settings")
-    jobs, worlds = _checked_jobs(jobs), paper_suite() if worlds is None else worlds
+        if not isinstance(chosen, Oracle):
+            _checked(chosen, Settings, "each of the settings")
+    jobs, worlds = checked_jobs(jobs), paper_suite() if worlds is None else worlds
     experiments = _experiments(worlds, settings, drives, common)
     total = len(worlds) * len(settings) if isinstance(worlds, Sized) else None
+    return perform_all(experiments, folder=folder, jobs=jobs, total=total, progress=progress)
+
+
+def perform_all(
+    experiments: Iterable[Experiment],
+    *,
+    folder: StrPath | None = None,
+    jobs: int | None = -1,
+    total: int | None = None,
+    progress: bool = True,
+) -> list[Row]:
+    """Perform experiments of any sort, in parallel; rows in their order. See ``run_study`` for the arguments."""
     rows: dict[int, Row] = {}
-    with open_journal(folder) as (done, file), _bar(total, progress) as bar:
-        for number, row, key in _performed(experiments, done, rows, jobs):
-            rows[number] = row
-            append(file, row, key)
+    try:
+        with open_journal(folder) as (done, file), _bar(total, progress) as bar:
+            for number, row, key in _performed(experiments, done, rows, jobs):
+                rows[number] = row
+                append(file, row, key)
+                bar.update(len(rows) - bar.n)
             bar.update(len(rows) - bar.n)
-        bar.update(len(rows) - bar.n)
+    except KeyboardInterrupt:
+        if folder is None:
+            raise
+        journal = Path(folder) / JOURNAL
+        raise KeyboardInterrupt(f"stopped; the same command continues, with what {journal} holds") from None
     return [rows[number] for number in sorted(rows)]
+
+
+def maps_in(paths: Iterable[StrPath]) -> dict[str, World]:
+    """Return the maps in files and folders, by the files' names without their endings.
+
+    Raises
+    ------
+    ValueError
+        If a folder holds no map, a file is no map, or two have the same name.
+    OSError
+        If a file cannot be read.
+
+    Examples
+    --------
+    >>> maps_in([])
+    {}
+    """
+    files: list[Path] = []
+    for path in map(Path, paths):
+        inside = sorted(p for p in path.iterdir() if p.suffix.lower() in MAP_ENDINGS) if path.is_dir() else [path]
+        if not inside:
+            raise ValueError(f"{path}: must hold maps ({' or '.join(MAP_ENDINGS)}), got none")
+        files += inside
+    maps = {file.stem: load_world(file) for file in files}
+    if len(maps) < len(files):
+        raise ValueError(f"maps must have different names, got {len(files)} files with {len(maps)} names")
+    return maps
 
 
 # --- the work -----------------------------------------------------------------------------------------------
@@ -116,7 +168,7 @@ def run_study(
 
 def _experiments(
     worlds: Mapping[str, World] | Iterable[World],
-    settings: Mapping[str, Settings],
+    settings: Mapping[str, Settings | Oracle],
     drives: Mapping[str, ArrayLike] | None,
     common: Mapping[str, Any],
 ) -> Iterator[Experiment]:
@@ -178,15 +230,32 @@ def _deaf_children() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
+def in_parallel(
+    function: Callable[..., T], work: Iterable[tuple[Any, ...]], *, jobs: int | None, progress: bool, unit: str
+) -> list[T]:
+    """Return what a function makes of each of the arguments, in their order; nothing is kept in a journal."""
+    from joblib import Parallel, delayed
+
+    work = list(work)
+    with _deaf_children():
+        running = Parallel(n_jobs=jobs, return_as="generator")(delayed(function)(*arguments) for arguments in work)
+    with closing(running) as results, _bar(len(work), progress, unit) as bar:
+        done = []
+        for result in results:
+            done.append(result)
+            bar.update()
+    return done
+
+
 def _numbered(number: int, experiment: Experiment) -> tuple[int, Row]:
     return number, perform(experiment)
 
 
-def _bar(total: int | None, progress: bool) -> Any:
+def _bar(total: int | None, progress: bool, unit: str = "row") -> Any:
     from tqdm import tqdm
 
     # disable=None: shown on a terminal only.
-    return tqdm(total=total, unit="row", file=sys.stderr, disable=None if progress else True, dynamic_ncols=True)
+    return tqdm(total=total, unit=unit, file=sys.stderr, disable=None if progress else True, dynamic_ncols=True)
 
 
 # --- arguments ----------------------------------------------------------------------------------------------
@@ -198,7 +267,8 @@ def _checked(value: Any, kind: type, name: str) -> Any:
     return value
 
 
-def _checked_jobs(jobs: int | None) -> int | None:
+def checked_jobs(jobs: int | None) -> int | None:
+    """Return the number of processes, or say in one sentence what is wrong."""
     if jobs is None or jobs == -1:
         return jobs
     try:

@@ -1,90 +1,181 @@
-"""The oracle: a least-squares fit that is told which point belongs to which side of which shape.
+"""Oracle: how right any method can hope to be, from the same points.
 
-No method can be expected to do better from the same points, so every accuracy figure is printed as a pair: ours
-and the oracle's. It shares no code with the finding: sides by ``numpy.linalg.eigh``, circles by
-``scipy.optimize.least_squares``.
+A least-squares fit that is told which point belongs to which side of which shape. Every accuracy is printed as a pair:
+ours and the oracle's. It shares no code with the finding.
+
+In:  a ``World``, the ``Scans`` of it, and the sensor that made them.
+Out: the grid's points, the (shape, side) that each was hit on, and from both the fitted shapes.
+
+>>> from primkit.lidar import scan
+>>> from primkit.robot import teleport_poses
+>>> world = World([Circle((0.1, 0.0), 0.06)])
+>>> points, owners = told_points(world, scan(world, teleport_poses(world)))
+>>> oracle_fit(world, points, owners)[0].centroid.round(3).tolist()
+[0.1, 0.0]
+
+Its limits. It fits each side by itself: a rectangle's right angles are news to it, so that a method which uses them
+can be closer. And it fits what was seen: a shape with a side that has fewer than two points is missing, though a method
+may guess it rightly.
+
+Sources: total least squares by the smallest eigenvector of the scatter, Pearson (1901), "On lines and planes of closest
+fit"; the circle's geometric fit by least squares, as in Chernov (2010), "Circular and Linear Regression".
 """
 
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
 import numpy as np
-from scipy.optimize import least_squares
+from numpy.typing import NDArray
 
-import primkit as pk
+from ..grid import Grid
+from ..lidar import Lidar, Scans
+from ..raycast import cast_rays
+from ..shapes import Circle, Polygon, Shape
+from ..world import World
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+NOBODY = -1  # the owner of a point that comes from nowhere
+SIGMAS = 6.0  # a reading farther than this from the true range, in standard deviations, is no noise
+EXACT = 1e-9  # m: without noise a reading differs by rounding at most
 
 
-def told(world, poses, lidar, rng, resolution=0.001):
-    """Scan, and return the occupied cells' centres with the (shape, side) that each was hit on, and the grid.
+@dataclass(frozen=True)
+class Oracle:
+    """Stands where a method's ``Settings`` stand: an experiment with it is measured by the oracle."""
 
-    A beam's true hit tells the side; noise moves the point along the beam. Strays belong to (-1, -1).
+    method: Literal["oracle"] = "oracle"
+
+
+ORACLE = Oracle()
+
+
+def told_points(
+    world: World, scans: Scans, lidar: Lidar | None = None, resolution: float = 0.001
+) -> tuple[Floats, Ints]:
+    """Return the grid's points, and the side of the shape that each was hit on.
+
+    Parameters
+    ----------
+    world : World
+        The truth.
+    scans : Scans
+        What the LiDAR saw of it.
+    lidar : Lidar, optional
+        The sensor that made the scans; the paper's by default.
+    resolution : float
+        Side of the grid's cells in metres.
+
+    Returns
+    -------
+    points : array, shape (N, 2)
+        Centres of the occupied cells, metres; the same, in the same order, as ``Grid.points()``.
+    owners : array of int, shape (N, 2)
+        (shape, side), counted from 0; a circle has side 0 only. (-1, -1) for a point that comes from nowhere.
+
+    Notes
+    -----
+    The true hit of a beam tells the side; noise moves the point along the beam. A cell that was hit from several
+    sides belongs to the first.
     """
-    exact = pk.cast_rays(world, poses, lidar.angles, lidar.range_max)
-    scans = pk.scan(world, poses, lidar, rng=rng)
-    grid = pk.Grid(resolution)
-    grid.add(scans)
-    true_hit = (exact >= lidar.range_min) & (exact <= lidar.range_max)
-    at = pk.Scans(
-        scans.poses,
-        scans.angles,
-        np.where(scans.hits & true_hit, exact, np.where(scans.hits, 0.0, np.inf)),
-        scans.inside,
-    )
-    owners = _owners(world, at.points())
-    real = (scans.hits & true_hit)[scans.hits]
-    ghost = real & (np.abs(scans.ranges - np.where(true_hit, exact, 0.0))[scans.hits] > 6 * lidar.noise_std + 1e-9)
-    owners[~real | ghost] = -1
+    lidar = Lidar() if lidar is None else lidar
+    exact = exact_ranges(world, scans, lidar)
+    seen, true = scans.ranges[scans.hits], exact[scans.hits]
+    real = np.isfinite(true)
+    real[real] = np.abs(seen[real] - true[real]) <= SIGMAS * lidar.noise_std + EXACT
+    owners = np.full((len(seen), 2), NOBODY)
+    hits = Scans(scans.poses, scans.angles, np.where(scans.hits, exact, np.inf), scans.inside).points()
+    owners[np.isfinite(true)] = hit_sides(world, hits)
+    owners[~real] = NOBODY
+    grid = Grid(resolution)
     cells, first = np.unique(grid.to_cells(scans.points()), axis=0, return_index=True)
-    return grid.to_points(cells), owners[first], grid
+    return grid.to_points(cells), owners[first]
 
 
-def _owners(world, points):
-    """Return (shape, side) of each exact hit, shape (N, 2); the side of a circle is 0."""
-    best = np.full(len(points), np.inf)
-    owners = np.full((len(points), 2), -1)
-    for i, shape in enumerate(world.shapes):
-        if shape.kind == "circle":
-            distance, side = np.abs(shape.signed_distance(points)), np.zeros(len(points), dtype=int)
-        else:
-            offset = points[:, None] - shape.vertices
-            along = np.clip((offset * shape.edges).sum(-1) / shape.sides**2, 0, 1)
-            gaps = np.linalg.norm(offset - along[..., None] * shape.edges, axis=-1)
-            distance, side = gaps.min(axis=1), gaps.argmin(axis=1)
-        nearer = distance < best
-        best[nearer] = distance[nearer]
-        owners[nearer] = np.column_stack([np.full(nearer.sum(), i), side[nearer]])
+def exact_ranges(world: World, scans: Scans, lidar: Lidar) -> Floats:
+    """Return what a sensor without faults measures from the same poses, shape (P, B), metres; ``inf``: nothing."""
+    exact = cast_rays(world, scans.poses, scans.angles, lidar.range_max)
+    exact[exact < lidar.range_min] = np.inf
+    return exact
+
+
+def hit_sides(world: World, hits: Floats) -> Ints:
+    """Return (shape, side) of points that lie exactly on outlines, shape (N, 2) -> (N, 2)."""
+    nearest, owners = np.full(len(hits), np.inf), np.full((len(hits), 2), NOBODY)
+    for number, shape in enumerate(world.shapes):
+        gaps = _gaps(shape, hits)
+        side, gap = gaps.argmin(axis=1), gaps.min(axis=1)
+        nearer = gap < nearest
+        nearest[nearer] = gap[nearer]
+        owners[nearer, 0], owners[nearer, 1] = number, side[nearer]
     return owners
 
 
-def oracle_fit(world, points, owners):
-    """Return the fitted shape for each true one, in order; None where a side has fewer than two points."""
-    return [
-        _circle(points[owners[:, 0] == i]) if shape.kind == "circle" else _polygon(shape, points, owners, i)
-        for i, shape in enumerate(world.shapes)
-    ]
+def _gaps(shape: Shape, points: Floats) -> Floats:
+    """Return the distance of each point from each side, shape (N, K), metres; a circle is one side."""
+    if isinstance(shape, Circle):
+        return np.abs(shape.signed_distance(points))[:, None]
+    offset = points[:, None] - shape.vertices
+    along = np.clip((offset * shape.edges).sum(axis=-1) / shape.sides**2, 0, 1)
+    return np.linalg.norm(offset - along[..., None] * shape.edges, axis=-1)
 
 
-def _circle(points):
+def oracle_fit(world: World, points: Floats, owners: Ints) -> list[Shape | None]:
+    """Return the shape that fits each true one's points best, in the order of the true ones.
+
+    Parameters
+    ----------
+    world : World
+        The truth: the number of sides is taken from it.
+    points, owners : array, shape (N, 2)
+        Of ``told_points``.
+
+    Returns
+    -------
+    list of Circle, Polygon and None
+        None where a side has fewer than two points, or a circle fewer than three; and where the sides' lines do
+        not meet in a convex outline.
+
+    Examples
+    --------
+    >>> oracle_fit(World([Circle((0, 0), 0.1)]), np.empty((0, 2)), np.empty((0, 2), dtype=int))
+    [None]
+    """
+    fits: list[Shape | None] = []
+    for number, shape in enumerate(world.shapes):
+        own = owners[:, 0] == number
+        if isinstance(shape, Circle):
+            fits.append(_fitted_circle(points[own]))
+        else:
+            sides = [points[own & (owners[:, 1] == side)] for side in range(len(shape.vertices))]
+            fits.append(_fitted_polygon(sides))
+    return fits
+
+
+def _fitted_circle(points: Floats) -> Circle | None:
+    from scipy.optimize import least_squares
+
     if len(points) < 3:
         return None
     middle = points.mean(axis=0)
     start = [*middle, np.hypot(*(points - middle).T).mean()]
     fit = least_squares(lambda p: np.hypot(points[:, 0] - p[0], points[:, 1] - p[1]) - p[2], start, xtol=1e-14)
-    return pk.Circle(fit.x[:2], fit.x[2])
+    return Circle(fit.x[:2], abs(float(fit.x[2])))
 
 
-def _polygon(shape, points, owners, i):
-    normals, offsets = [], []
-    for side in range(len(shape.vertices)):
-        own = points[(owners[:, 0] == i) & (owners[:, 1] == side)]
-        if len(own) < 2:
-            return None
-        middle = own.mean(axis=0)
-        _, axes = np.linalg.eigh(np.cov((own - middle).T))
-        normals.append(axes[:, 0])
-        offsets.append(axes[:, 0] @ middle)
-    k = len(normals)
+def _fitted_polygon(sides: list[Floats]) -> Polygon | None:
+    """Fit a line ``n . p = d`` to the points of each side, and take the corners where neighbours meet."""
+    if min(map(len, sides)) < 2:
+        return None
+    middles = np.array([side.mean(axis=0) for side in sides])
+    scatter = [(side - middle).T @ (side - middle) for side, middle in zip(sides, middles, strict=True)]
+    normals = np.array([np.linalg.eigh(s)[1][:, 0] for s in scatter])
+    offsets = (normals * middles).sum(axis=1)
+    pairs = np.stack([np.roll(normals, 1, axis=0), normals], axis=1)  # (K, 2, 2): each side with the one before it
     try:
-        corners = [
-            np.linalg.solve(np.array([normals[j - 1], normals[j]]), [offsets[j - 1], offsets[j]]) for j in range(k)
-        ]
-        return pk.Polygon(corners)
+        return Polygon(np.linalg.solve(pairs, np.column_stack([np.roll(offsets, 1), offsets])[..., None])[..., 0])
     except (np.linalg.LinAlgError, ValueError):
         return None

@@ -18,12 +18,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import astuple, dataclass, fields
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..formats import StrPath, write_atomically
 from ..shapes import KINDS
-from .experiment import Movement, Row, Score
+from .row import Movement, Row, Score
 from .table import Line, Table, as_csv
 
 RESAMPLES = 5000  # the ends of an interval then differ by about a hundredth of its width from draw to draw
@@ -127,6 +129,15 @@ def rows_as_csv(rows: Iterable[Row]) -> str:
     return as_csv(header + errors, lines)
 
 
+def write_tables(folder: StrPath, made: Iterable[Table], rows: Iterable[Row]) -> list[str]:
+    """Write each table and all rows as CSV into a folder, and return the files' names."""
+    files = {f"{table.title.split('.')[0].lower().replace(' ', '-')}.csv": table.csv() for table in made}
+    files["rows.csv"] = rows_as_csv(rows)
+    for name, text in files.items():
+        write_atomically(Path(folder) / name, text)
+    return list(files)
+
+
 def interval(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the ends of the 95 % interval of each column's mean: percentile bootstrap over rows.
 
@@ -141,6 +152,24 @@ def interval(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[
     >>> low.tolist(), high.tolist()
     ([0.25, 1.0], [0.75, 1.0])
     """
+    low, high = np.percentile(resampled_means(values), (2.5, 97.5), axis=0)
+    return low, high
+
+
+def resampled_means(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return each column's mean over rows drawn with replacement, as often as the bootstrap asks for.
+
+    The same rows are drawn for all columns of one draw, so that what is computed from several means belongs together.
+
+    Parameters
+    ----------
+    values : array, shape (N, Q)
+        One row for each map.
+
+    Returns
+    -------
+    array, shape (5000, Q)
+    """
     n = len(values)
     rng = np.random.default_rng(0)  # fixed: the same rows give the same table
     step = max(1, BLOCK // n)
@@ -148,8 +177,7 @@ def interval(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[
         rng.multinomial(n, np.full(n, 1 / n), size=min(step, RESAMPLES - start)) @ values / n
         for start in range(0, RESAMPLES, step)
     ]
-    low, high = np.percentile(np.vstack(means), (2.5, 97.5), axis=0)
-    return low, high
+    return np.vstack(means)
 
 
 def _table(title: str, rows: Sequence[Row], groups: Mapping[str, Sequence[Row]]) -> Table:

@@ -24,11 +24,13 @@ from html import escape
 from itertools import groupby
 from typing import Any
 
-from .experiment import Score
+from .row import Score
 
 HEADER = ("", "total", "shape", "centre", "dimensions", "time [s]")
 WIDTH = 80  # of a plain terminal
 DIGITS = 6  # in CSV: far more than 34 maps can tell, and the same on every machine
+
+Groups = Sequence[tuple[str, Sequence[tuple[str, ...]]]]  # headings, each with its rows of cells
 
 
 @dataclass(frozen=True)
@@ -102,31 +104,12 @@ class Table:
         return [(f"{maps}, {_maps(lines)}", lines) for maps, lines in grouped]
 
     def __str__(self) -> str:
-        body = [
-            (heading, [(f" {first}", *rest) for first, *rest in _all_cells(lines)]) for heading, lines in self.groups()
-        ]
-        every = [HEADER, *(cells for _, lines in body for cells in lines)]
-        widths = [max(len(cells[i]) for cells in every) for i in range(len(HEADER))]
-        text = [self.title, "", _aligned(HEADER, widths), "  ".join("-" * width for width in widths)]
-        for heading, lines in body:
-            text += [heading, *(_aligned(cells, widths) for cells in lines)]
-        for note in self.notes:
-            text += ["", *textwrap.wrap(note, WIDTH)] if note is self.notes[0] else textwrap.wrap(note, WIDTH)
-        return "\n".join(text)
+        block = as_block(HEADER, [(heading, _all_cells(lines)) for heading, lines in self.groups()])
+        return "\n".join([self.title, "", *block, *wrapped(self.notes)])
 
     def _repr_html_(self) -> str:
-        body = []
-        for heading, lines in self.groups():
-            body.append([_cell("th", heading, scope="rowgroup", colspan=len(HEADER))])
-            body += [
-                [_cell("th", first, "normal", scope="row"), *(_cell("td", text, "normal") for text in rest)]
-                for first, *rest in _all_cells(lines)
-            ]
-        head = "".join(_cell("th", text, scope="col") for text in HEADER)
-        filled = "".join(f"<tr>{''.join(cells)}</tr>" for cells in body)
-        caption = f'<caption style="text-align:left;font-weight:bold">{escape(self.title)}</caption>'
-        notes = "".join(f'<p style="max-width:50em">{escape(note)}</p>' for note in self.notes)
-        return f"<table>{caption}<thead><tr>{head}</tr></thead><tbody>{filled}</tbody></table>{notes}"
+        groups = [(heading, _all_cells(lines)) for heading, lines in self.groups()]
+        return as_html(self.title, HEADER, groups, self.notes)
 
     def csv(self) -> str:
         """Return the lines with all their numbers as CSV; scores from 0 to 1, times in seconds."""
@@ -139,6 +122,43 @@ class Table:
             times = (line.robot_time, line.computing_time, line.time)
             rows.append((line.maps, line.n, line.method, line.scoring, *scores, *times))
         return as_csv(header, rows)
+
+
+def as_block(header: Sequence[str], groups: Groups) -> list[str]:
+    """Return lines of text with the columns aligned: a heading, below it the group's rows, a space farther in.
+
+    >>> as_block(("", "total"), [("2 maps", [("ROBUST", "1.000")])])
+    ['         total', '-------  -----', '2 maps', ' ROBUST  1.000']
+    """
+    body = [(heading, [(f" {first}", *rest) for first, *rest in rows]) for heading, rows in groups]
+    every = [header, *(cells for _, rows in body for cells in rows)]
+    widths = [max(len(cells[i]) for cells in every) for i in range(len(header))]
+    text = [_aligned(header, widths), "  ".join("-" * width for width in widths)]
+    for heading, rows in body:
+        text += [heading, *(_aligned(cells, widths) for cells in rows)]
+    return text
+
+
+def wrapped(notes: Sequence[str]) -> list[str]:
+    """Return notes as lines that fit a terminal, below an empty one."""
+    lines = [line for note in notes for line in textwrap.wrap(note, WIDTH)]
+    return ["", *lines] if lines else []
+
+
+def as_html(title: str, header: Sequence[str], groups: Groups, notes: Sequence[str]) -> str:
+    """Return a table with its notes as HTML, for a notebook."""
+    body = []
+    for heading, rows in groups:
+        body.append([_cell("th", heading, scope="rowgroup", colspan=len(header))])
+        body += [
+            [_cell("th", first, "normal", scope="row"), *(_cell("td", text, "normal") for text in rest)]
+            for first, *rest in rows
+        ]
+    head = "".join(_cell("th", text, scope="col") for text in header)
+    filled = "".join(f"<tr>{''.join(cells)}</tr>" for cells in body)
+    caption = f'<caption style="text-align:left;font-weight:bold">{escape(title)}</caption>'
+    below = "".join(f'<p style="max-width:50em">{escape(note)}</p>' for note in notes)
+    return f"<table>{caption}<thead><tr>{head}</tr></thead><tbody>{filled}</tbody></table>{below}"
 
 
 def as_csv(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:

@@ -1,0 +1,125 @@
+"""Row: what became of one map with one method.
+
+In:  the scores, errors and times of an experiment.
+Out: a ``Row``, which also knows its scores at other tolerances, and which error belongs to which shape.
+
+>>> right = Score(weighted=1.0, shape=1.0, center=1.0, dimension=1.0)
+>>> row = Row("mine", "ROBUST", ("circle",), "automatic", 0.005, False, 1, right, right, (0.0, 0.002), (0.0,), 7.7, 0.1)
+>>> row.count_right, row.within(0.001).center
+(True, 0.5)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from ..arguments import ROUNDING
+from ..evaluation import CENTER_WEIGHT, DIMENSION_WEIGHT, SHAPE_WEIGHT
+from ..shapes import Kind
+
+Movement = Literal["automatic", "manual"]
+
+N_DIMENSIONS: dict[Kind, int] = {"circle": 1, "triangle": 3, "rectangle": 2, "pentagon": 5}
+
+
+@dataclass(frozen=True)
+class Score:
+    """The scores of one map, each from 0 to 1; ``weighted`` is the total."""
+
+    weighted: float
+    shape: float
+    center: float
+    dimension: float
+
+
+@dataclass(frozen=True)
+class Row:
+    """What became of one map with one method. Rows are equal when all but the measured time is.
+
+    Parameters
+    ----------
+    map, settings : str
+        The names of the map and of the method.
+    kinds : tuple of str
+        The kinds of the map's shapes.
+    movement : {"automatic", "manual"}
+        Set down on way-points, or driven.
+    tolerance : float
+        Of the fair protocol, in metres.
+    told : bool
+        Whether the method was told how many shapes there are.
+    n_found : int
+        How many shapes were found.
+    fair, paper : Score
+        Two-sided within the tolerance, and scored as published; see ``evaluate``.
+    center_errors, dimension_errors : tuple of float
+        found - true for each coordinate and dimension that can be compared, metres; paired fairly.
+    robot_time : float
+        Number of scans times the LiDAR's period, seconds.
+    computing_time : float
+        Filling the grid and finding the shapes, seconds on this machine.
+    found_as : tuple of str and None
+        For each of ``kinds``, the kind of the shape that was found in its place; None where it was missed.
+    """
+
+    map: str
+    settings: str
+    kinds: tuple[Kind, ...]
+    movement: Movement
+    tolerance: float
+    told: bool
+    n_found: int
+    fair: Score
+    paper: Score
+    center_errors: tuple[float, ...]
+    dimension_errors: tuple[float, ...]
+    robot_time: float
+    computing_time: float = field(compare=False)
+    found_as: tuple[Kind | None, ...] = ()
+
+    @property
+    def n_shapes(self) -> int:
+        """How many shapes there are."""
+        return len(self.kinds)
+
+    @property
+    def count_right(self) -> bool:
+        """Whether as many shapes were found as there are."""
+        return self.n_found == self.n_shapes
+
+    def within(self, tolerance: float) -> Score:
+        """Return the fair scores at another tolerance, metres: the errors tell them.
+
+        Examples
+        --------
+        >>> right, half = Score(1.0, 1.0, 1.0, 1.0), Score(0.55, 1.0, 0.5, 0.0)
+        >>> errors = {"center_errors": (0.0, 0.002), "dimension_errors": (-0.004,)}
+        >>> row = Row("", "", ("circle",), "automatic", 0.005, False, 1, right, right, *errors.values(), 7.7, 0.1)
+        >>> row.within(0.005) == right, row.within(0.001) == half
+        (True, True)
+        """
+        if not self.kinds:
+            return self.fair
+        right = [
+            sum(abs(e) <= tolerance + ROUNDING for e in errors)
+            for errors in (self.center_errors, self.dimension_errors)
+        ]
+        shape, center = self.fair.shape, right[0] / (2 * self.n_shapes)
+        dimension = right[1] / sum(N_DIMENSIONS[kind] for kind in self.kinds)
+        weighted = SHAPE_WEIGHT * shape + CENTER_WEIGHT * center + DIMENSION_WEIGHT * dimension
+        return Score(weighted, shape, center, dimension)
+
+    def errors_by_shape(self) -> list[tuple[tuple[float, ...], tuple[float, ...]] | None]:
+        """Return for each true shape its centre's and its dimensions' errors, metres.
+
+        None for a shape that was missed, or found as one of another kind.
+        """
+        errors: list[tuple[tuple[float, ...], tuple[float, ...]] | None] = []
+        c = d = 0
+        for kind, found in zip(self.kinds, self.found_as, strict=True):
+            here = c, d
+            c, d = c + 2 * (found is not None), d + N_DIMENSIONS[kind] * (found == kind)
+            right = self.center_errors[here[0] : c], self.dimension_errors[here[1] : d]
+            errors.append(right if found == kind else None)
+        return errors

@@ -1,0 +1,104 @@
+"""Wander: random drives among the shapes.
+
+In:  a ``World``, a number of scans, a seed.
+Out: poses, shape (P, 3): x [m], y [m], heading [rad], world frame; from each to the next a period of the LiDAR passes.
+
+>>> from primkit.shapes import Circle
+>>> path = wander(World([Circle((0.1, 0.0), 0.06)]), 60, rng=0)
+>>> path.shape, bool(Circle((0.1, 0.0), 0.06).signed_distance(path[:, :2]).min() >= CLEARANCE)
+((60, 3), True)
+
+The robot drives at full speed and turns as it likes, a little more or less from scan to scan; where that would bring it
+too near to an outline or to the board's edge, it takes the turn nearest to its wish that leads clear.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arguments import as_count, as_positive
+from ..world import World
+
+Floats = NDArray[np.float64]
+
+CLEARANCE = 0.04  # m: a little more than the robot's radius
+MARGIN = 0.10  # m: so far inside the board's edge the way stays: shapes are in the middle
+STEP = 0.0128  # m: the e-puck's way in one period at full speed, 6.28 rad/s x 0.0205 m x 0.1 s
+TURNS = np.radians(np.arange(-24, 25, 3))  # from scan to scan; far less than the e-puck can, which makes a smooth way
+WILL, WHIM = 0.8, np.radians(6)  # how much of a turn is kept in the next, and the deviation of what is added
+AHEAD = 12  # steps that must be clear
+STARTS = 1000  # spots tried for a start
+
+
+def wander(
+    world: World, n_poses: int = 60, *, clearance: float = CLEARANCE, rng: int | np.random.Generator | None = None
+) -> Floats:
+    """Return the poses of a smooth random drive that keeps clear of all outlines, shape (n_poses, 3).
+
+    Parameters
+    ----------
+    world : World
+        What stands on the board.
+    n_poses : int
+        How many scans are made.
+    clearance : float
+        Least distance from every outline, metres.
+    rng : int or numpy.random.Generator, optional
+        Seed or generator.
+
+    Raises
+    ------
+    ValueError
+        If the number or the clearance is out of its range, or no spot on the board is that clear.
+
+    Examples
+    --------
+    >>> from primkit.shapes import Circle
+    >>> wander(World([Circle((0, 0), 0.4)]), clearance=0.4, rng=0)
+    Traceback (most recent call last):
+        ...
+    ValueError: clearance must leave room for a drive, got 0.4 m on a board of 1 m
+    """
+    rng = np.random.default_rng(rng)
+    n_poses, clearance = as_count(n_poses, "n_poses"), as_positive(clearance, "clearance", zero=True)
+    place, turn = _start(world, clearance, rng), 0.0
+    heading = rng.uniform(0, 2 * np.pi)
+    poses = [(*place, heading)]
+    while len(poses) < n_poses:
+        wish = WILL * turn + rng.normal(0, WHIM)
+        turn, goes = _turn(world, place, heading, wish, clearance)
+        heading += turn
+        place = place + goes * STEP * np.array([np.cos(heading), np.sin(heading)])
+        poses.append((*place, heading))
+    return np.array(poses)
+
+
+def _start(world: World, clearance: float, rng: np.random.Generator) -> Floats:
+    spots = rng.uniform(-0.5, 0.5, (STARTS, 2)) * (world.size - 2 * MARGIN)
+    free = np.flatnonzero(_clear(world, spots, clearance))
+    if len(free) == 0:
+        raise ValueError(f"clearance must leave room for a drive, got {clearance:g} m on a board of {world.size:g} m")
+    return spots[free[0]]
+
+
+def _turn(world: World, place: Floats, heading: float, wish: float, clearance: float) -> tuple[float, bool]:
+    """Return the turn nearest to the wish that leads clear, and whether the robot goes on; else it turns on the spot.
+
+    A way is looked at as if the turn were kept up; where none is clear to its end, the longest clear one is taken.
+    """
+    bearings = heading + TURNS[:, None] * np.arange(1, AHEAD + 1)
+    ways = place + STEP * np.cumsum(np.stack([np.cos(bearings), np.sin(bearings)], axis=-1), axis=1)  # (T, AHEAD, 2)
+    clear = _clear(world, ways.reshape(-1, 2), clearance).reshape(bearings.shape)
+    length = np.where(clear.all(axis=1), AHEAD, clear.argmin(axis=1))
+    best = np.flatnonzero(length == length.max())
+    chosen = best[np.abs(TURNS[best] - wish).argmin()]
+    return float(TURNS[chosen]), bool(length[chosen] > 0)
+
+
+def _clear(world: World, spots: Floats, clearance: float) -> NDArray[np.bool_]:
+    """Tell which spots are well on the board and that far from every outline, shape (N,)."""
+    clear: NDArray[np.bool_] = np.all(np.abs(spots) <= world.size / 2 - MARGIN, axis=1)
+    for shape in world.shapes:
+        clear &= shape.signed_distance(spots) >= clearance
+    return clear
