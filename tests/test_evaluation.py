@@ -281,6 +281,17 @@ def test_match(found, true, pairs):
     assert all(type(i) is int for pair in got for i in pair)
 
 
+def test_match_takes_detections_too():
+    found = (Detection(shape, np.empty((0, 2)), 0.0) for shape in (B, A))
+    assert match(found, iter([A, B])) == [(1, 0), (0, 1)]
+
+
+@pytest.mark.parametrize(("found", "true"), [([A, 3], [A]), ([A], [A, 3])], ids=["found", "true"])
+def test_match_refuses_what_is_no_shape(found, true):
+    with pytest.raises(ValueError, match=exactly("what was found must be detections or shapes, got int")):
+        match(found, true)
+
+
 @pytest.mark.parametrize("gate", [NAN, INF, -0.1, "near", None])
 def test_match_failure(gate):
     """Regression: NaN reached the assignment, which refused it in its own words."""
@@ -290,6 +301,11 @@ def test_match_failure(gate):
 
 
 FAILURES = {
+    "one shape bare": (
+        {"found": CIRCLE},
+        "found must be a list of detections or shapes, as in evaluate(found, world), got Circle",
+    ),
+    "no world": ({"world": [CIRCLE]}, "world must be a World, as in evaluate(found, world), got list"),
     "a tuple": ({"found": [((0, 0), 0.1)]}, "what was found must be detections or shapes, got tuple"),
     "a number": ({"found": [3]}, "what was found must be detections or shapes, got int"),
     "nothing at all": ({"found": [None]}, "what was found must be detections or shapes, got NoneType"),

@@ -365,6 +365,13 @@ def test_inliers_are_those_of_the_final_line(refit):
         left &= ~found.inliers
 
 
+@pytest.mark.parametrize(("refit", "through"), [(False, 2), (True, 0)], ids=["sampled", "refitted"])
+def test_without_refitting_each_line_goes_through_two_of_the_points(refit, through):
+    points = np.vstack([wall(1), wall(2) + 1.0])
+    found = find_lines(points, 0.06, refit=refit, rng=3)
+    assert [np.count_nonzero(np.abs(f.line.signed_distance(points)) < 1e-12) for f in found] == [through, through]
+
+
 def test_the_same_seed_gives_the_same_lines():
     points = np.random.default_rng(0).uniform(size=(60, 2))
     runs = [find_lines(points, 0.03, trials=20, rng=rng) for rng in (4, 4, np.random.default_rng(4))]

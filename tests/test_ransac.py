@@ -105,6 +105,15 @@ def test_the_truncated_score_asks_how_well_the_inliers_fit():
     assert found.inliers.tolist() == [False] * 6 + [True] * 6
 
 
+def test_of_samples_with_as_many_inliers_the_first_is_kept(monkeypatch):
+    walls = [*((x, 0) for x in range(5)), *((x, 1) for x in range(5))]
+    lower, upper, across = (0, 4), (9, 6), (0, 6)
+    on_lower = [True] * 5 + [False] * 5
+    for samples, kept in (([across, lower, upper], on_lower), ([across, upper, lower], on_lower[::-1])):
+        monkeypatch.setattr(ransac, "draw_samples", lambda *_, samples=samples: np.array(samples))
+        assert run_ransac(walls, LINE, 0.1, refit=False).inliers.tolist() == kept
+
+
 # --- the boundary -------------------------------------------------------------------------------------------
 
 DIRECTIONS = {"horizontal": 0.0, "vertical": np.pi / 2, "diagonal": np.pi / 4, "steep": 1.3, "backwards": np.pi}
@@ -291,6 +300,8 @@ FAILURES = {
     "threshold a word": ({"threshold": "5 mm"}, "threshold must be a finite number >= 0, got '5 mm'"),
     "no trial": ({"trials": 0}, "trials must be a whole number >= 1, got 0"),
     "half a trial": ({"trials": 0.5}, "trials must be a whole number >= 1, got 0.5"),
+    "no model": ({"model": "line"}, "model must be a Model, such as lines.LINE, got str"),
+    "a seed below zero": ({"rng": -1}, "rng must be a whole number >= 0 or a numpy Generator, got -1"),
     "unknown score": ({"score": "msac"}, 'score must be "count" or "truncated", got \'msac\''),
     "too few points are no excuse": ({"points": [], "trials": -1}, "trials must be a whole number >= 1, got -1"),
 }
@@ -298,9 +309,9 @@ FAILURES = {
 
 @pytest.mark.parametrize(("change", "sentence"), FAILURES.values(), ids=FAILURES)
 def test_run_ransac_failure(change, sentence):
-    arguments = {"points": [(0, 0), (1, 0), (2, 0)], "threshold": 0.1, "trials": 5} | change
+    arguments = {"points": [(0, 0), (1, 0), (2, 0)], "model": LINE, "threshold": 0.1, "trials": 5, "rng": 0} | change
     with pytest.raises(ValueError, match=exactly(sentence)):
-        run_ransac(model=LINE, rng=0, **arguments)
+        run_ransac(**arguments)
 
 
 # --- a model of one's own -----------------------------------------------------------------------------------
@@ -438,6 +449,7 @@ def test_trials_needed_is_the_least_number_that_is_enough(size, confidence):
 TRIALS_FAILURES = {
     "no inliers": ((0, 2), "inlier_share must be above 0 and at most 1, got 0"),
     "below none": ((-0.5, 2), "inlier_share must be above 0 and at most 1, got -0.5"),
+    "too few to count": ((1e-200, 2), "inlier_share must be large enough to draw a clean sample at all, got 1e-200"),
     "percent": ((50, 2), "inlier_share must be above 0 and at most 1, got 50"),
     "NaN": ((NAN, 2), "inlier_share must be above 0 and at most 1, got nan"),
     "no points": ((0.5, 0), "sample_size must be a whole number >= 1, got 0"),

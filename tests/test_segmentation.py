@@ -91,6 +91,14 @@ KMEANS_FAILURES = {
 }
 
 
+@pytest.mark.parametrize("seed", [-1, 0.5, "seven"])
+@pytest.mark.parametrize("function", [kmeans, segment])
+def test_a_seed_is_a_whole_number_or_a_generator(function, seed):
+    sentence = f"rng must be a whole number >= 0 or a numpy Generator, got {seed!r}"
+    with pytest.raises(ValueError, match=exactly(sentence)):
+        function([(0, 0), (1, 1)], 1, rng=seed)
+
+
 @pytest.mark.parametrize(("points", "k", "sentence"), KMEANS_FAILURES.values(), ids=KMEANS_FAILURES)
 def test_kmeans_failure(points, k, sentence):
     with pytest.raises(ValueError, match=exactly(sentence)):
@@ -146,6 +154,7 @@ def test_the_seed_matters_where_groups_are_not_clear():
 
 COINCIDENT = {
     "two, too close to square their distance": [(0, 0), (1e-200, 0)],
+    "three, too close to square their distance": [(0, 0), (1e-200, 0), (0, 3e-200)],
     "pairs closer than rounding can tell": [(0, 0), (1e-9, 0), (1, 0), (1, 1e-9), (2e-9, 0)],
 }
 
@@ -166,6 +175,7 @@ COUNTS = {
     "all points equal": ([(0.1, 0.1)] * 5, 1),
     "two points": ([(0, 0), (9, 9)], 1),  # the silhouette needs a group of two
     "two pairs": ([(0, 0), (0, 1), (9, 9), (9, 8)], 2),
+    "a pair and one apart": ([(0, 0), (0, 1), (9, 9)], 2),  # as many groups as can have a silhouette
     "two outlines": (np.vstack(CLEAR[:2]), 2),
     "three outlines": (np.vstack(CLEAR[1:]), 3),
     "four outlines": (np.vstack(CLEAR), 4),
