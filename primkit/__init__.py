@@ -34,18 +34,23 @@ _STORY = {
     "lines": ("Line", "fit_line", "find_lines"),
     "circles": ("fit_circle", "find_circle"),
     "measure": ("Detection", "measure_shape"),
+    "steps": ("Steps",),
     "pipeline": ("find_shapes", "Settings", "PAPER", "ROBUST"),
     "evaluation": ("evaluate", "match", "Report"),
     "formats": ("load_world", "save_world", "load_scans", "save_scans", "paper_suite"),
     "study": ("run_study", "tables"),
     "plots": ("plot_world", "plot_scan", "plot_points", "plot_clusters", "plot_found", "plot_story", "save_figure"),
 }
+# Rooms that are used by their own name: pk.widgets.rays(), pk.checks.ray_segment(mine).
+_ROOMS = ("widgets", "checks")
 _HOME = {name: module for module, names in _STORY.items() for name in names}
 
-__all__ = list(_HOME)
+__all__ = [*_HOME, *_ROOMS]
 
 
 def __getattr__(name: str) -> Any:
+    if name in _ROOMS:
+        return import_module(f"primkit.{name}")  # the import itself keeps it in the namespace
     if name not in _HOME:
         raise AttributeError(f"module 'primkit' has no attribute {name!r}")
     # Kept in the module's namespace: the next use is an ordinary look-up.
@@ -55,10 +60,11 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *_HOME])
+    return sorted({*globals(), *__all__})
 
 
 if TYPE_CHECKING:
+    from . import checks, widgets
     from .circles import find_circle, fit_circle
     from .evaluation import Report, evaluate, match
     from .formats import load_scans, load_world, paper_suite, save_scans, save_world
@@ -73,5 +79,6 @@ if TYPE_CHECKING:
     from .robot import skipped_waypoints, teleport_poses
     from .segmentation import count_by_silhouette, kmeans, link, segment
     from .shapes import Circle, Polygon
+    from .steps import Steps
     from .study import run_study, tables
     from .world import World, random_world

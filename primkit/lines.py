@@ -112,6 +112,7 @@ def find_lines(
     most: int = 20,
     trials: int = 1000,
     refit: bool = True,
+    model: Model | None = None,
     rng: int | np.random.Generator | None = None,
 ) -> list[FoundLine]:
     """Return lines found one after the other, each on the points that the lines before it left.
@@ -130,6 +131,8 @@ def find_lines(
         Random samples for each line.
     refit : bool
         Fit each line to its inliers by least squares.
+    model : Model, optional
+        The line with a fit of your own; ``LINE`` by default.
     rng : int or numpy.random.Generator, optional
         Seed or generator.
 
@@ -155,7 +158,7 @@ def find_lines(
     found: list[FoundLine] = []
     while len(found) < most and np.count_nonzero(left) > left_over * len(points):
         rest = np.flatnonzero(left)
-        consensus = run_ransac(points[rest], LINE, threshold, trials=trials, refit=refit, rng=rng)
+        consensus = run_ransac(points[rest], model or LINE, threshold, trials=trials, refit=refit, rng=rng)
         if consensus is None:
             break
         found.append(_found(consensus, rest, len(points)))

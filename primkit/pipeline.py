@@ -25,12 +25,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arguments import as_count, as_points, as_positive, as_rng, check_type
-from .certainty import LEAST_SPREAD
-from .lines import find_lines
+from .explain import SIGMAS
+from .lines import LINE, find_lines
 from .measure import Detection, detection, spread_of
 from .paper import measure_as_published
 from .regroup import Group, explained, regrouped
+from .scatter import LEAST_SPREAD, spread_across, spread_from_median
 from .segmentation import Grouping, check_count, segment
+from .steps import Steps
 
 Floats = NDArray[np.float64]
 Memory = dict[tuple[bytes, float, int, bool], Group]  # groups as they were measured last, by their points
@@ -100,6 +102,7 @@ def find_shapes(
     n_shapes: int | None = None,
     *,
     settings: Settings = ROBUST,
+    steps: Steps | None = None,
     memory: Memory | None = None,
     rng: int | np.random.Generator | None = None,
 ) -> list[Detection]:
@@ -114,6 +117,8 @@ def find_shapes(
         Linking finds the number by itself: with it, and the published measuring, this is not used.
     settings : Settings
         ``ROBUST`` or ``PAPER``, or your own.
+    steps : Steps, optional
+        Functions of your own in the place of steps: ``Steps(segment=..., fit_line=..., fit_circle=...)``.
     memory : dict, optional
         For mapping while driving: hand in the same dictionary, empty at first, with every call, and the same
         seed as ``rng``. Groups whose points have not changed since the last call are not measured again; the
@@ -129,7 +134,8 @@ def find_shapes(
     Raises
     ------
     ValueError
-        If points are not finite (N, 2), or more shapes are asked for than there are different points.
+        If points are not finite (N, 2), or more shapes are asked for than there are different points; or if a
+        step of your own returns what it should not.
 
     Examples
     --------
@@ -137,6 +143,8 @@ def find_shapes(
     []
     """
     check_type(settings, Settings, "settings must be ROBUST, PAPER or Settings of your own")
+    steps = Steps() if steps is None else steps
+    check_type(steps, Steps, "steps must be Steps, such as Steps(fit_circle=mine)")
     points = as_points(points)
     if n_shapes is not None:
         check_count(n_shapes, points)
@@ -144,18 +152,25 @@ def find_shapes(
         return []
     points = points[np.lexsort((points[:, 1], points[:, 0]))]  # the order of seeing leaves no trace
     group_rng, measure_rng = as_rng(rng).spawn(2)
-    asked = n_shapes if settings.grouping == "kmeans" else None
-    labels = segment(points, asked, method=settings.grouping, rng=group_rng)
+    labels = steps.labels(points, n_shapes)
+    if labels is None:
+        asked = n_shapes if settings.grouping == "kmeans" else None
+        labels = segment(points, asked, method=settings.grouping, rng=group_rng)
     together = [points[labels == label] for label in range(labels.max() + 1)]
     if settings.method == "published":
-        found = _as_published(together, settings, measure_rng)
+        found = _as_published(together, settings, steps, measure_rng)
     else:
-        found = _jointly(together, n_shapes, settings, {} if memory is None else memory, measure_rng)
+        found = _jointly(together, n_shapes, settings, steps, {} if memory is None else memory, measure_rng)
     return sorted(found, key=lambda d: tuple(d.shape.centroid))
 
 
 def _jointly(
-    together: list[Floats], n_shapes: int | None, settings: Settings, memory: Memory, rng: np.random.Generator
+    together: list[Floats],
+    n_shapes: int | None,
+    settings: Settings,
+    steps: Steps,
+    memory: Memory,
+    rng: np.random.Generator,
 ) -> list[Detection]:
     """Explain each group, and ask for a second opinion on the groups: the default way."""
     seed = int(rng.integers(2**63))
@@ -173,11 +188,12 @@ def _jointly(
         groups, margins = regrouped(groups, spread, n_shapes, explain=partial(explain, spread=spread))
     memory.clear()  # what was not used now will not come again: a map only grows
     memory.update(used)
-    return [
-        replace(group.detection, count_margin=margin)
+    found = [
+        steps.remeasured(replace(group.detection, count_margin=margin), SIGMAS * spread)
         for group, margin in zip(groups, margins, strict=True)
         if group.detection is not None
     ]
+    return [one for one in found if one is not None]
 
 
 def _explain_all(
@@ -185,7 +201,7 @@ def _explain_all(
 ) -> tuple[list[Group], float]:
     """Explain each group; where the spread is not given, find it from the points, then from the fits."""
     if settings.noise_std is not None:
-        spread = float(np.hypot(settings.noise_std, LEAST_SPREAD))
+        spread = spread_across(settings.noise_std)
         return [explain(points, spread) for points in together], spread
     spread = _in_steps(spread_of(np.vstack([np.empty((0, 2)), *together])))
     groups = [explain(points, spread) for points in together]
@@ -205,27 +221,27 @@ def _in_steps(spread: float) -> float:
 
 
 def _spread_of_fits(groups: list[Group]) -> float | None:
-    """Return how far the points lie from the shapes that explain them; None without shapes.
-
-    1.4826 times the median distance is the standard deviation of Gaussian noise, and ignores strays.
-    """
+    """Return how far the points lie from the shapes that explain them; None without shapes."""
     distances = [g.shape.signed_distance(g.points) for g in groups if g.shape is not None]
     if not distances:
         return None
-    return max(LEAST_SPREAD, 1.4826 * float(np.median(np.abs(np.concatenate(distances)))))
+    return spread_from_median(float(np.median(np.abs(np.concatenate(distances)))))
 
 
-def _as_published(together: list[Floats], settings: Settings, rng: np.random.Generator) -> list[Detection]:
+def _as_published(
+    together: list[Floats], settings: Settings, steps: Steps, rng: np.random.Generator
+) -> list[Detection]:
     """Line after line, then extents and means: the paper's way."""
     line_rng, circle_rng = rng.spawn(2)
-    reach, found = settings.line_threshold, []
+    reach, left_over, trials = settings.line_threshold, settings.left_over, settings.line_trials
+    own = steps.fit_line is not None
+    model = replace(LINE, fit=steps.line_params) if own else LINE
+    found = []
     for cluster in together:
-        lines = find_lines(
-            cluster, reach, left_over=settings.left_over, trials=settings.line_trials, refit=False, rng=line_rng
-        )
+        lines = find_lines(cluster, reach, left_over=left_over, trials=trials, refit=own, model=model, rng=line_rng)
         shape = measure_as_published(
             cluster, len(lines), threshold=reach, trials=settings.circle_trials, rng=circle_rng
         )
         if shape is not None:
-            found.append(detection(shape, cluster, reach))
-    return found
+            found.append(steps.remeasured(detection(shape, cluster, reach), reach, sides=False))
+    return [one for one in found if one is not None]

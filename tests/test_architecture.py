@@ -30,6 +30,7 @@ ORDER = (
         "measure",
         "regroup",
         "paper",
+        "steps",
         "pipeline",
         "evaluation",
     ),

@@ -1,0 +1,149 @@
+"""Your own function in the place of a step: what it gets, what it may return, and what it is told otherwise."""
+
+import numpy as np
+import pytest
+
+import primkit as pk
+from primkit.steps import nearest_side
+
+QUICK = pk.Settings(grouping="kmeans", method="published", line_trials=300)
+WORLD = pk.random_world(4, kinds=["circle", "rectangle", "triangle", "circle"], rng=3)
+
+
+def points_of(world, **sensor):
+    grid = pk.Grid()
+    grid.add(pk.scan(world, pk.teleport_poses(world), pk.Lidar(**sensor), rng=0))
+    return grid.points()
+
+
+POINTS = points_of(WORLD)
+LABELS = pk.segment(POINTS, 4, rng=0)
+
+
+def by_truth(points, _n_shapes):
+    """Group points by the true outline they lie on."""
+    return np.argmin([np.abs(shape.signed_distance(points)) for shape in WORLD.shapes], axis=0)
+
+
+@pytest.mark.parametrize("settings", [pk.ROBUST, QUICK], ids=["robust", "paper"])
+def test_the_truth_can_group(settings):
+    found = pk.find_shapes(POINTS, 4, settings=settings, steps=pk.Steps(segment=by_truth), rng=0)
+    usual = pk.find_shapes(POINTS, 4, settings=settings, rng=0)
+    assert [d.shape for d in found] == [d.shape for d in usual]
+
+
+@pytest.mark.parametrize("settings", [pk.ROBUST, QUICK], ids=["robust", "paper"])
+def test_own_grouping_decides_what_belongs_together(settings):
+    def left_only(points, n_shapes):
+        assert n_shapes is None
+        return np.where(by_truth(points, None) == 0, 17, -3)
+
+    found = pk.find_shapes(POINTS, settings=settings, steps=pk.Steps(segment=left_only), rng=0)
+    assert len(found) == 1
+    assert found[0].shape.signed_distance([WORLD.shapes[0].centroid]) < 0
+
+
+def test_all_points_can_be_strays():
+    nothing = pk.Steps(segment=lambda points, _: np.full(len(points), -1))
+    assert pk.find_shapes(POINTS, steps=nothing, rng=0) == []
+
+
+@pytest.mark.parametrize("settings", [pk.ROBUST, QUICK], ids=["robust", "paper"])
+@pytest.mark.parametrize("answer", [pk.Circle, lambda center, radius: (*center, radius)], ids=["Circle", "numbers"])
+def test_own_circle_measures_the_circles_alone(settings, answer):
+    steps = pk.Steps(fit_circle=lambda points: answer(points.mean(axis=0), 0.05))
+    found = pk.find_shapes(POINTS, 4, settings=settings, steps=steps, rng=0)
+    usual = pk.find_shapes(POINTS, 4, settings=settings, rng=0)
+    for mine, theirs in zip(found, usual, strict=True):
+        if theirs.kind == "circle":
+            assert mine.shape.radius == 0.05
+            assert mine.center_std == ()
+        else:
+            assert mine.shape == theirs.shape
+
+
+def test_own_line_measures_the_sides():
+    found = pk.find_shapes(POINTS, steps=pk.Steps(fit_line=pk.fit_line), rng=0)
+    assert pk.evaluate(found, WORLD).weighted_accuracy == 1.0
+    usual = pk.find_shapes(POINTS, rng=0)
+    assert all((d.kind == "circle") == (d.shape == u.shape) for d, u in zip(found, usual, strict=True))
+
+
+def test_own_line_may_return_two_numbers():
+    def numbers(points):
+        line = pk.fit_line(points)
+        return line.angle, line.offset
+
+    a, b = (pk.find_shapes(POINTS, steps=pk.Steps(fit_line=fit), rng=0) for fit in (pk.fit_line, numbers))
+    assert [d.shape for d in a] == [d.shape for d in b]
+
+
+def test_own_line_is_used_under_paper():
+    seen = []
+
+    def watched(points):
+        seen.append(len(points))
+        return pk.fit_line(points)
+
+    pk.find_shapes(POINTS, 4, settings=QUICK, steps=pk.Steps(fit_line=watched), rng=0)
+    assert len(seen) >= 10
+    assert min(seen) >= 2
+
+
+def test_a_side_that_was_hardly_seen_stays():
+    square = pk.Polygon([(0, 0), (0.2, 0), (0.2, 0.2), (0, 0.2)])
+    outline = square.outline(160)
+    points = outline[outline[:, 0] > 1e-9]  # all but the side at x = 0
+    found = pk.find_shapes(points, steps=pk.Steps(fit_line=pk.fit_line), rng=0)
+    assert [d.kind for d in found] == ["rectangle"]
+
+
+@pytest.mark.parametrize("step", ["fit_line", "fit_circle"])
+def test_a_shape_that_the_own_fit_finds_nothing_for_is_left_out(step):
+    found = pk.find_shapes(POINTS, steps=pk.Steps(**{step: lambda _points: None}), rng=0)
+    kinds = {d.kind for d in found}
+    assert kinds == ({"circle"} if step == "fit_line" else {"rectangle", "triangle"})
+
+
+def test_own_functions_cannot_change_the_points():
+    def greedy(points, _n_shapes):
+        points[:] = 0.0
+        return np.zeros(len(points), dtype=int)
+
+    with_it = pk.find_shapes(POINTS, 4, steps=pk.Steps(segment=greedy), rng=0)
+    assert len(with_it) == 4
+
+
+@pytest.mark.parametrize(
+    ("steps", "message"),
+    [
+        ({"segment": 3}, "segment must be a function, got 3"),
+        ({"segment": lambda p, _n: p}, "segment must return a whole number for each of the .* points, got float64 of"),
+        ({"segment": lambda _p, _n: [0, 1]}, r"each of the \d+ points, got int64 of shape \(2,\)"),
+        ({"segment": lambda _p, _n: None}, "each of the .* points, got object of shape"),
+        ({"segment": lambda _p, _n: [[0], [0, 1]]}, "got nothing that is an array"),
+        ({"fit_circle": lambda _p: (0, 0)}, r"fit_circle must return a Circle, \(x, y, radius\) or None, got \(0, 0\)"),
+        ({"fit_circle": lambda _p: (0, 0, -1)}, r"with a radius > 0, got \(0, 0, -1\)"),
+        ({"fit_circle": lambda _p: (0, 0, np.nan)}, r"fit_circle must return .* got \(0, 0, nan\)"),
+        ({"fit_line": lambda _p: "y = 2x"}, r"fit_line must return a Line, \(angle, offset\) or None, got 'y = 2x'"),
+        (
+            {"fit_line": lambda p: (0.0, p[0, 0])},
+            "fit_line's lines along the .* must meet in its corners, got angles 0, ",
+        ),
+    ],
+)
+def test_what_a_step_may_not_return_is_told_in_one_sentence(steps, message):
+    with pytest.raises(ValueError, match=message):
+        pk.find_shapes(POINTS, steps=pk.Steps(**steps), rng=0)
+
+
+def test_steps_must_be_steps():
+    with pytest.raises(ValueError, match=r"steps must be Steps, such as Steps\(fit_circle=mine\), got function"):
+        pk.find_shapes(POINTS, steps=by_truth)
+
+
+def test_points_go_to_the_nearest_side():
+    triangle = pk.Polygon([(0, 0), (1, 0), (0, 1)])
+    outline = triangle.outline(300) * 1.0
+    nearest = nearest_side(triangle, outline)
+    assert np.bincount(nearest).tolist() == pytest.approx(300 * triangle.sides / triangle.perimeter, abs=2)
