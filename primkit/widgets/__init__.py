@@ -1,0 +1,31 @@
+"""Widgets: pictures that change while you move a slider; one for each lesson.
+
+Beside the story, and the only user of ipywidgets. A lesson shows its slider with ``pk.widgets.rays()``, and below it the
+same picture for a few named settings, which needs no Python behind it: ``pk.widgets.rays().twin()``.
+
+In:  a lesson's values: beams, noise, a seed.
+Out: an ``Explorer``; its ``draw(**values)`` returns the picture as SVG text.
+
+>>> svg = rays().draw(beams=24)
+>>> what_it_says(svg)
+'2 of 24 beams meet an outline within 0.3 m, with noise of 0 mm; the nearest hit is 16.5 cm away.'
+
+The rooms, each of which imports only those before it:
+
+===============  ==================================================
+``drawing.py``   SVG as text: axes in metres, points, shapes
+``slider.py``    ``explore``: controls, named settings, the twin
+``boards.py``    lesson 00: a board for each seed
+``rays.py``      lesson 01: beams among shapes
+===============  ==================================================
+"""
+
+from .boards import boards
+from .drawing import what_it_says
+from .rays import rays
+from .slider import Choice, Explorer, Slider, explore
+
+# The lessons' sliders, in the order of the lessons: tests move each of them to all corners of its box.
+SLIDERS = (boards, rays)
+
+__all__ = ["boards", "rays", "explore", "Explorer", "Slider", "Choice", "what_it_says", "SLIDERS"]

@@ -1,0 +1,338 @@
+"""Drawing: small pictures as SVG text, quick enough to be redrawn while a slider moves.
+
+In:  what is to be seen, in metres or any other unit, and the ``Frame`` that maps it to pixels.
+Out: SVG as text. The same values give the same text on every computer: numbers have a tenth of a pixel.
+
+>>> frame = board_frame(size=1.0)
+>>> frame.points([(0.0, 0.0)], color="#0072B2")
+'<path d="M235 200h0" stroke="#0072B2" stroke-width="5" stroke-linecap="round" fill="none"/>'
+>>> svg = picture(frame, frame.points([(0, 0)]), title="One point", says="One point in the middle of the board.")
+>>> what_it_says(svg)
+'One point in the middle of the board.'
+
+The title says the finding. ``says`` is a sentence with the numbers: it is read aloud to who cannot see the picture,
+and stands below it beside a slider.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from html import escape, unescape
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..plots.look import BLUE, GREY, INK, KIND_COLORS, PALE
+from ..shapes import Circle, Shape
+
+LEFT, RIGHT, TOP, BOTTOM = 60, 15, 30, 45  # px around the axes: numbers, names, title
+LETTERS = 12  # px: the size of all letters but the title's
+FONT = "font-family='DejaVu Sans, Verdana, sans-serif'"
+TIE = 1e-6  # px: lifts 0.25 and its like over the edge, where rounding could go either way
+
+# Outlines of the markers around (0, 0), for a radius of 1; "dot" and "ring" are drawn as circles.
+MARKERS: dict[str, tuple[tuple[float, float], ...]] = {
+    "square": ((-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)),
+    "diamond": ((0, -1.2), (1.2, 0), (0, 1.2), (-1.2, 0)),
+    "triangle": ((0, -1.2), (1.1, 0.8), (-1.1, 0.8)),
+    "triangle down": ((0, 1.2), (-1.1, -0.8), (1.1, -0.8)),
+}
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The axes of a picture: which piece of the plane is seen, and on how many pixels.
+
+    Parameters
+    ----------
+    x, y : tuple of float
+        From and to, in the unit of the axis; y grows upwards.
+    x_label, y_label : str
+        Name and unit, such as ``"x [m]"``.
+    width, height : int
+        Of the whole picture in pixels, with title and labels.
+    x_ticks, y_ticks : tuple of float, optional
+        Where numbers stand; round numbers when not given.
+    """
+
+    x: tuple[float, float]
+    y: tuple[float, float]
+    x_label: str = "x [m]"
+    y_label: str = "y [m]"
+    width: int = 440
+    height: int = 425
+    x_ticks: tuple[float, ...] | None = None
+    y_ticks: tuple[float, ...] | None = None
+
+    @property
+    def scale(self) -> tuple[float, float]:
+        """Pixels for one unit of x and of y."""
+        across, up = self.width - LEFT - RIGHT, self.height - TOP - BOTTOM
+        return across / (self.x[1] - self.x[0]), up / (self.y[1] - self.y[0])
+
+    def at(self, points: ArrayLike) -> list[list[float]]:
+        """Return the pixels of points, N pairs, rounded to a tenth."""
+        low, scale = np.array([self.x[0], self.y[1]]), np.array([1.0, -1.0]) * self.scale
+        pixels = (np.asarray(points, dtype=float).reshape(-1, 2) - low) * scale + (LEFT, TOP)
+        rounded: list[list[float]] = (np.round(pixels + TIE, 1) + 0.0).tolist()
+        return rounded
+
+    def points(self, points: ArrayLike, color: str = BLUE, marker: str = "dot", size: float = 5) -> str:
+        """Draw points, shape (N, 2), as dots, or as "ring", "cross", or one of ``MARKERS``; ``size`` in pixels."""
+        places = self.at(points)
+        if marker == "dot":
+            moves = "".join(f"M{x:g} {y:g}h0" for x, y in places)
+            return path(moves, stroke=color, stroke_width=size, stroke_linecap="round")
+        r = size / 2
+        if marker == "ring":
+            turn = f"a{r:g} {r:g} 0 1 0 {2 * r:g} 0a{r:g} {r:g} 0 1 0 {-2 * r:g} 0"
+            moves = "".join(f"M{_n(x - r)} {y:g}{turn}" for x, y in places)
+            return path(moves, stroke=color, stroke_width=1.5)
+        if marker == "cross":
+            moves = "".join(f"M{_n(x - r)} {_n(y - r)}l{size:g} {size:g}m{-size:g} 0l{size:g} {-size:g}" for x, y in places)
+            return path(moves, stroke=color, stroke_width=1.8)
+        outline = MARKERS[marker]
+        moves = "".join(
+            "M" + "L".join(f"{_n(x + r * dx)} {_n(y + r * dy)}" for dx, dy in outline) + "Z" for x, y in places
+        )
+        return path(moves, fill=color)
+
+    def segments(self, starts: ArrayLike, ends: ArrayLike, color: str = GREY, width: float = 1, dash: str = "") -> str:
+        """Draw a straight stroke from each start to its end, shape (N, 2) each; ``dash`` as in "4 3"."""
+        pairs = zip(self.at(starts), self.at(ends), strict=True)
+        moves = "".join(f"M{x:g} {y:g}L{u:g} {v:g}" for (x, y), (u, v) in pairs)
+        return path(moves, stroke=color, stroke_width=width, stroke_dasharray=dash)
+
+    def polyline(self, points: ArrayLike, color: str = BLUE, width: float = 2, dash: str = "") -> str:
+        """Draw a line through points, shape (N, 2)."""
+        return path(_through(self.at(points)), stroke=color, stroke_width=width, stroke_dasharray=dash)
+
+    def area(self, points: ArrayLike, color: str = BLUE, opacity: float = 0.2) -> str:
+        """Fill the polygon with corners, shape (N, 2)."""
+        return path(_through(self.at(points)) + "Z", fill=color, fill_opacity=opacity)
+
+    def circle(
+        self, center: ArrayLike, radius: float, color: str = BLUE, width: float = 2, dash: str = "", fill: float = 0
+    ) -> str:
+        """Draw a circle; ``fill`` is the opacity inside. Only for frames with the same scale both ways."""
+        ((x, y),) = self.at([center])
+        inside = f'fill="{color}" fill-opacity="{fill:g}"' if fill else 'fill="none"'
+        line = f' stroke-dasharray="{dash}"' if dash else ""
+        r = _n(abs(radius) * self.scale[0])
+        return f'<circle cx="{x:g}" cy="{y:g}" r="{r}" {inside} stroke="{color}" stroke-width="{width:g}"{line}/>'
+
+    def shape(self, shape: Shape, color: str = "", width: float = 2, dash: str = "", fill: float = 0.2) -> str:
+        """Draw a Circle or Polygon in its kind's colour; ``fill`` is the opacity inside."""
+        color = color or KIND_COLORS[shape.kind]
+        if isinstance(shape, Circle):
+            return self.circle(shape.center, shape.radius, color, width, dash, fill)
+        edge = {"stroke": color, "stroke_width": width, "stroke_dasharray": dash} if width else {}
+        return path(_through(self.at(shape.vertices)) + "Z", fill=color, fill_opacity=fill, **edge)
+
+    def robot(self, pose: ArrayLike, color: str = INK, size: float = 9) -> str:
+        """Draw the robot at a pose (x, y, heading) as an arrow head; ``size`` in pixels."""
+        x, y, heading = np.asarray(pose, dtype=float).tolist()
+        ((px, py),) = self.at([(x, y)])
+        ahead, aside = np.array([np.cos(heading), -np.sin(heading)]), np.array([np.sin(heading), np.cos(heading)])
+        corners = [(px, py) + size * v for v in (1.2 * ahead, aside * 0.8 - 0.9 * ahead, -0.8 * aside - 0.9 * ahead)]
+        return path(_through(corners) + "Z", fill=color, stroke="white", stroke_width=1)
+
+    def text(
+        self,
+        where: ArrayLike,
+        words: str,
+        color: str = INK,
+        anchor: str = "start",
+        shift: tuple[float, float] = (0, 0),
+        size: float = LETTERS,
+    ) -> str:
+        """Write words at a place, moved by ``shift`` pixels (right, down), on a white rim so that lines do not cross."""
+        ((x, y),) = self.at([where])
+        return words_at(x + shift[0], y + shift[1], words, color=color, anchor=anchor, size=size, rim=True)
+
+    def legend(self, entries: Sequence[tuple[str, str, str]], corner: str = "top left") -> str:
+        """Explain signs in a corner: (words, colour, "dot" | "ring" | "cross" | "line" | "dashed" | a marker) each.
+
+        >>> "hits" in board_frame().legend([("hits", BLUE, "dot")])
+        True
+        """
+        wide = 0.62 * LETTERS * max(len(words) for words, _, _ in entries) + 34
+        tall = 17 * len(entries) + 6
+        left = LEFT + 5 if "left" in corner else self.width - RIGHT - 5 - wide
+        top = TOP + 5 if "top" in corner else self.height - BOTTOM - 5 - tall
+        box = f'<rect x="{_n(left)}" y="{_n(top)}" width="{_n(wide)}" height="{tall}" fill="white" fill-opacity="0.85"/>'
+        return box + "".join(
+            _sign(left + 6, top + 12 + 17 * row, color, sign)
+            + words_at(left + 30, top + 16 + 17 * row, words, color=INK)
+            for row, (words, color, sign) in enumerate(entries)
+        )
+
+    def axes(self) -> str:
+        """Draw the axes with ticks, numbers, names and units."""
+        (left, bottom), (right, top) = self.at([(self.x[0], self.y[0]), (self.x[1], self.y[1])])
+        x_ticks = round_ticks(*self.x) if self.x_ticks is None else self.x_ticks
+        y_ticks = round_ticks(*self.y) if self.y_ticks is None else self.y_ticks
+        xs = [x for x, _ in self.at([(t, self.y[0]) for t in x_ticks])]
+        ys = [y for _, y in self.at([(self.x[0], t) for t in y_ticks])]
+        box = f"M{left:g} {top:g}H{right:g}V{bottom:g}H{left:g}Z"
+        marks = "".join(f"M{x:g} {bottom:g}v5" for x in xs) + "".join(f"M{left:g} {y:g}h-5" for y in ys)
+        middle = f"{_n((top + bottom) / 2)}"
+        return "".join(
+            [
+                path(box, stroke=PALE, stroke_width=1),
+                path(marks, stroke=GREY, stroke_width=1),
+                *(words_at(x, bottom + 18, _number(t), anchor="middle") for x, t in zip(xs, x_ticks, strict=True)),
+                *(words_at(left - 8, y + 4, _number(t), anchor="end") for y, t in zip(ys, y_ticks, strict=True)),
+                words_at((left + right) / 2, bottom + 36, self.x_label, anchor="middle"),
+                words_at(16, float(middle), self.y_label, anchor="middle", turned=True),
+            ]
+        )
+
+
+def board_frame(size: float = 1.0, *, width: int = 425) -> Frame:
+    """Return the frame of a board of ``size`` metres, centred on the origin, with the same scale both ways."""
+    return square_frame((0.0, 0.0), size, width=width)
+
+
+def square_frame(center: tuple[float, float], size: float, *, width: int = 425) -> Frame:
+    """Return the frame of a square piece of the board around ``center``, ``size`` metres wide: a magnifying glass."""
+    (x, y), half = center, size / 2
+    height = width - LEFT - RIGHT + TOP + BOTTOM
+    return Frame((x - half, x + half), (y - half, y + half), width=width, height=height)
+
+
+def picture(frame: Frame, *parts: str, title: str, says: str) -> str:
+    """Return the whole SVG: axes, parts from back to front, the finding as title, and the sentence for all readers.
+
+    Parts that reach beyond the axes are cut off at them.
+    """
+    (left, bottom), (right, top) = frame.at([(frame.x[0], frame.y[0]), (frame.x[1], frame.y[1])])
+    window = f'x="{left:g}" y="{top:g}" width="{_n(right - left)}" height="{_n(bottom - top)}"'
+    view = f'viewBox="{left:g} {top:g} {_n(right - left)} {_n(bottom - top)}"'
+    inside = f'<svg {window} {view} overflow="hidden">{"".join(parts)}</svg>'
+    heading = words_at(left, 19, title, color=INK, size=_fitting(title, frame.width - left - 4), bold=True)
+    return _svg(frame.width, frame.height, title, says, frame.axes() + inside + heading)
+
+
+def side_by_side(pictures: Sequence[str], captions: Sequence[str], *, columns: int = 3, says: str = "") -> str:
+    """Return pictures of the same size as small multiples in one SVG, with a caption above each."""
+    width, height = size_of(pictures[0])
+    columns = min(columns, len(pictures))
+    rows = -(-len(pictures) // columns)
+    cells = []
+    for number, (svg, caption) in enumerate(zip(pictures, captions, strict=True)):
+        x, y = number % columns * width, number // columns * (height + 26)
+        cells.append(words_at(x + LEFT, y + 20, f"{'abcdefghijkl'[number]}) {caption}", size=15, bold=True))
+        cells.append(svg.replace("<svg ", f'<svg x="{x}" y="{y + 26}" ', 1))
+    says = says or " ".join(f"{caption}: {what_it_says(svg)}" for svg, caption in zip(pictures, captions, strict=True))
+    return _svg(columns * width, rows * (height + 26), "; ".join(captions), says, "".join(cells))
+
+
+def sentence(width: int, height: int, words: str) -> str:
+    """Return a picture that is a sentence: for when there is nothing else to draw."""
+    lines, line = [], ""
+    for word in words.split():
+        if line and len(line) + len(word) > width / (0.62 * 14):
+            lines.append(line)
+            line = word
+        else:
+            line = f"{line} {word}".strip()
+    body = "".join(words_at(20, 40 + 20 * n, part, size=14) for n, part in enumerate([*lines, line]))
+    return _svg(width, height, words, words, body)
+
+
+def what_it_says(svg: str) -> str:
+    """Return the sentence that was given to ``picture`` as ``says``."""
+    found = re.search(r"<desc>(.*?)</desc>", svg, re.DOTALL)
+    return unescape(found[1]) if found else ""
+
+
+def size_of(svg: str) -> tuple[int, int]:
+    """Return width and height of a picture in pixels."""
+    found = re.search(r'viewBox="0 0 (\d+) (\d+)"', svg)
+    if found is None:
+        raise ValueError("a picture must be SVG text from picture(), got something without a viewBox")
+    return int(found[1]), int(found[2])
+
+
+def path(moves: str, *, fill: str = "none", **look: str | float) -> str:
+    """Return a path with its look: ``stroke_width=2`` becomes ``stroke-width="2"``; what is empty is left out."""
+    given = {name.replace("_", "-"): value for name, value in look.items() if value != ""}
+    written = "".join(f' {k}="{v if isinstance(v, str) else f"{v:g}"}"' for k, v in given.items())
+    return f'<path d="{moves}"{written} fill="{fill}"/>' if moves else ""
+
+
+def words_at(
+    x: float,
+    y: float,
+    words: str,
+    *,
+    color: str = "#444444",
+    anchor: str = "start",
+    size: float = LETTERS,
+    bold: bool = False,
+    rim: bool = False,
+    turned: bool = False,
+) -> str:
+    """Return words at a pixel; ``rim`` puts white around the letters, ``turned`` writes them upwards."""
+    look = f'font-size="{size:g}" fill="{color}"'
+    look += f' text-anchor="{anchor}"' if anchor != "start" else ""
+    look += ' font-weight="bold"' if bold else ""
+    look += ' stroke="white" stroke-width="3" paint-order="stroke"' if rim else ""
+    look += f' transform="rotate(-90 {_n(x)} {_n(y)})"' if turned else ""
+    return f'<text x="{_n(x)}" y="{_n(y)}" {look}>{escape(words)}</text>'
+
+
+def round_ticks(low: float, high: float, most: int = 6) -> tuple[float, ...]:
+    """Return at most ``most`` round numbers from low to high.
+
+    >>> round_ticks(-0.5, 0.5), round_ticks(0, 10)
+    ((-0.4, -0.2, 0.0, 0.2, 0.4), (0.0, 2.0, 4.0, 6.0, 8.0, 10.0))
+    """
+    power = 10.0 ** np.floor(np.log10(high - low) - 1)
+    for step in (power * m for m in (1, 2, 5, 10, 20, 50)):
+        first, last = np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9)
+        if last - first < most:
+            break
+    return tuple((np.round(np.arange(first, last + 1) * step, 10) + 0.0).tolist())
+
+
+def _svg(width: int, height: int, title: str, says: str, body: str) -> str:
+    """Return an SVG with a white ground that shrinks to narrow columns, and what is said to who cannot see it."""
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" '
+        f'role="img" style="max-width:100%;height:auto" {FONT}>'
+        f"<title>{escape(title)}</title><desc>{escape(says)}</desc>"
+        f'<rect width="{width}" height="{height}" fill="white"/>{body}</svg>'
+    )
+
+
+def _sign(x: float, y: float, color: str, sign: str) -> str:
+    """Draw the sign of a legend's entry, 18 px wide, from (x, y) on."""
+    if sign in ("line", "dashed"):
+        return path(f"M{_n(x)} {_n(y)}h18", stroke=color, stroke_width=2, stroke_dasharray="5 3" if sign == "dashed" else "")
+    # A frame of its own in which one unit is one pixel, and (0, 0) the middle of the sign.
+    here = Frame((LEFT - x - 9, LEFT - x - 8), (y - TOP - 1, y - TOP), width=LEFT + RIGHT + 1, height=TOP + BOTTOM + 1)
+    return here.points([(0, 0)], color, sign, 8)
+
+
+def _through(pixels: Iterable[Iterable[float]]) -> str:
+    """Return the moves through pixels."""
+    return "M" + "L".join(f"{_n(x)} {_n(y)}" for x, y in pixels)
+
+
+def _n(value: float) -> str:
+    """Return a pixel as text, with a tenth at most."""
+    return f"{round(value + TIE, 1) + 0.0:g}"
+
+
+def _number(value: float) -> str:
+    """Return a tick's number, with a true minus sign."""
+    return f"{value:g}".replace("-", "\u2212")
+
+
+def _fitting(title: str, room: float) -> float:
+    """Return the size of letters, 14 px or less, with which a bold title fits into the room."""
+    return min(14.0, round(room / (0.66 * max(1, len(title))), 1))
