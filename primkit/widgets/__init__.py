@@ -1,14 +1,14 @@
 """Widgets: pictures that change while you move a slider; one for each lesson.
 
-Beside the story, and the only user of ipywidgets. A lesson shows its slider with ``pk.widgets.rays()``, and below it the
-same picture for a few named settings, which needs no Python behind it: ``pk.widgets.rays().twin()``.
+Beside the story, and the only user of ipywidgets. A lesson shows its slider with ``pk.widgets.rays()``, and below it
+the same picture for a few named settings, which needs no Python behind it: ``pk.widgets.rays().twin()``.
 
 In:  a lesson's values: beams, noise, a seed.
 Out: an ``Explorer``; its ``draw(**values)`` returns the picture as SVG text.
 
 >>> svg = rays().draw(beams=24)
 >>> what_it_says(svg)
-'2 of 24 beams meet an outline within 0.3 m, with noise of 0 mm; the nearest hit is 16.5 cm away.'
+'9 of 24 beams meet an outline within 0.3 m, with noise of 0 mm; the nearest hit is 17.0 cm away.'
 
 The rooms, each of which imports only those before it:
 

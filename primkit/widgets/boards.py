@@ -53,5 +53,7 @@ def draw_board(seed: int, shapes: int, noise: float, show: str) -> str:
         *(frame.shape(shape, width=1) for shape in world.shapes if show != POINTS),
         frame.points(points if show != TRUTH else np.empty((0, 2)), INK, size=2),
         title=f"Seed {seed}: " + (names if show != POINTS else count(len(points), "occupied cell")),
-        says=f"The board with seed {seed}: " + (seen if show == POINTS else names if show == TRUTH else f"{names}; {seen}") + ".",
+        says=f"The board with seed {seed}: "
+        + (seen if show == POINTS else names if show == TRUTH else f"{names}; {seen}")
+        + ".",
     )

@@ -5,7 +5,7 @@ Out: SVG as text. The same values give the same text on every computer: numbers 
 
 >>> frame = board_frame(size=1.0)
 >>> frame.points([(0.0, 0.0)], color="#0072B2")
-'<path d="M235 200h0" stroke="#0072B2" stroke-width="5" stroke-linecap="round" fill="none"/>'
+'<path d="M235 205h0" stroke="#0072B2" stroke-width="5" stroke-linecap="round" fill="none"/>'
 >>> svg = picture(frame, frame.points([(0, 0)]), title="One point", says="One point in the middle of the board.")
 >>> what_it_says(svg)
 'One point in the middle of the board.'
@@ -91,7 +91,9 @@ class Frame:
             moves = "".join(f"M{_n(x - r)} {y:g}{turn}" for x, y in places)
             return path(moves, stroke=color, stroke_width=1.5)
         if marker == "cross":
-            moves = "".join(f"M{_n(x - r)} {_n(y - r)}l{size:g} {size:g}m{-size:g} 0l{size:g} {-size:g}" for x, y in places)
+            moves = "".join(
+                f"M{_n(x - r)} {_n(y - r)}l{size:g} {size:g}m{-size:g} 0l{size:g} {-size:g}" for x, y in places
+            )
             return path(moves, stroke=color, stroke_width=1.8)
         outline = MARKERS[marker]
         moves = "".join(
@@ -148,7 +150,7 @@ class Frame:
         shift: tuple[float, float] = (0, 0),
         size: float = LETTERS,
     ) -> str:
-        """Write words at a place, moved by ``shift`` pixels (right, down), on a white rim so that lines do not cross."""
+        """Write words at a place, moved by ``shift`` pixels (right, down), on a white rim to be read on lines."""
         ((x, y),) = self.at([where])
         return words_at(x + shift[0], y + shift[1], words, color=color, anchor=anchor, size=size, rim=True)
 
@@ -162,7 +164,9 @@ class Frame:
         tall = 17 * len(entries) + 6
         left = LEFT + 5 if "left" in corner else self.width - RIGHT - 5 - wide
         top = TOP + 5 if "top" in corner else self.height - BOTTOM - 5 - tall
-        box = f'<rect x="{_n(left)}" y="{_n(top)}" width="{_n(wide)}" height="{tall}" fill="white" fill-opacity="0.85"/>'
+        box = (
+            f'<rect x="{_n(left)}" y="{_n(top)}" width="{_n(wide)}" height="{tall}" fill="white" fill-opacity="0.85"/>'
+        )
         return box + "".join(
             _sign(left + 6, top + 12 + 17 * row, color, sign)
             + words_at(left + 30, top + 16 + 17 * row, words, color=INK)
@@ -312,7 +316,9 @@ def _svg(width: int, height: int, title: str, says: str, body: str) -> str:
 def _sign(x: float, y: float, color: str, sign: str) -> str:
     """Draw the sign of a legend's entry, 18 px wide, from (x, y) on."""
     if sign in ("line", "dashed"):
-        return path(f"M{_n(x)} {_n(y)}h18", stroke=color, stroke_width=2, stroke_dasharray="5 3" if sign == "dashed" else "")
+        return path(
+            f"M{_n(x)} {_n(y)}h18", stroke=color, stroke_width=2, stroke_dasharray="5 3" if sign == "dashed" else ""
+        )
     # A frame of its own in which one unit is one pixel, and (0, 0) the middle of the sign.
     here = Frame((LEFT - x - 9, LEFT - x - 8), (y - TOP - 1, y - TOP), width=LEFT + RIGHT + 1, height=TOP + BOTTOM + 1)
     return here.points([(0, 0)], color, sign, 8)

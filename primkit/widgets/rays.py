@@ -9,6 +9,7 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..lidar import Lidar, scan
 from ..plots.look import ORANGE, PALE, VERMILION
@@ -43,7 +44,7 @@ def rays() -> Explorer:
             "few beams": {"beams": 24, "reach": 0.5},
             "noisy": {"noise": 10.0, "reach": 0.5},
             "far sight": {"reach": 1.0, "beams": 360},
-            "along a wall": {"x": -0.1, "y": -0.22, "reach": 0.5, "beams": 360},
+            "along a wall": {"x": 0.42, "y": -0.03, "reach": 0.5, "beams": 360},
             "inside a shape": {"x": 0.2, "y": -0.18, "reach": 0.5},
         },
     )
@@ -54,7 +55,9 @@ def draw_rays(beams: int, noise: float, reach: float, x: float, y: float, headin
     pose = np.array([x, y, np.radians(heading)])
     scans = scan(BOARD, pose, Lidar(beams=beams, noise_std=noise / 1000, range_max=reach), rng=0)
     hits, bearings = scans.hits[0], pose[2] + scans.angles
-    ends = pose[:2] + np.minimum(scans.ranges[0], reach)[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)])
+    ends = pose[:2] + np.minimum(scans.ranges[0], reach)[:, None] * np.column_stack(
+        [np.cos(bearings), np.sin(bearings)]
+    )
     starts = np.broadcast_to(pose[:2], ends.shape)
     frame, n = board_frame(BOARD.size), int(hits.sum())
     inside = bool(scans.inside[0])
@@ -71,7 +74,7 @@ def draw_rays(beams: int, noise: float, reach: float, x: float, y: float, headin
     )
 
 
-def _says(beams: int, n: int, ranges: np.ndarray, reach: float, noise: float, inside: bool) -> str:
+def _says(beams: int, n: int, ranges: NDArray[np.float64], reach: float, noise: float, inside: bool) -> str:
     """Say in a sentence what the scan shows."""
     if inside:
         return f"The robot stands inside a shape: all {beams} beams read inf."

@@ -217,7 +217,9 @@ class Explorer:
         by_name = {control.name: control for control in self.controls}
         for key, value in complete.items():
             if key not in by_name or not by_name[key].holds(value):
-                raise ValueError(f"setting {name!r} must have values that its controls hold, got {key} = {short(value)}")
+                raise ValueError(
+                    f"setting {name!r} must have values that its controls hold, got {key} = {short(value)}"
+                )
         return complete
 
     def _repr_mimebundle_(self, **_kinds: Any) -> dict[str, Any]:

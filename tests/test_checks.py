@@ -1,0 +1,218 @@
+"""Checks: any correct algorithm passes, each usual fault is named, and whatever is handed in gets an answer.
+
+The answers are in tests/answers, a module for each lesson; the tests take them all.
+"""
+
+import ast
+import itertools
+import re
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import primkit as pk
+from primkit.checks import judges
+from primkit.checks.answer import COLORS, SIGNS, Answer, Check, Fault
+
+FOLDER = Path(__file__).resolve().parent / "answers"
+ANSWERS = {}
+for path in sorted(FOLDER.glob("lesson_*.py")):
+    ANSWERS |= import_module(f"tests.answers.{path.stem}").ANSWERS
+TASKS = {task.name: task for task in pk.checks.TASKS}
+
+
+def table(kind):
+    """Return (task, function, text) for each listed answer of a kind."""
+    rows = []
+    for task, answers in ANSWERS.items():
+        for name, answer in answers.get(kind, {}).items():
+            function, text = answer if isinstance(answer, tuple) else (answer, "")
+            rows.append(pytest.param(task, function, text, id=f"{task}-{name}"))
+    return rows
+
+
+def test_every_task_has_answers_and_every_answer_a_task():
+    assert set(ANSWERS) == set(TASKS)
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_every_task_has_another_right_way_and_three_wrong_ones(task):
+    assert len(ANSWERS[task]["right"]) >= 1
+    assert len(ANSWERS[task]["wrong"]) >= 3
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_a_task_is_a_public_name_of_checks(task):
+    assert getattr(pk.checks, task) is TASKS[task]
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_the_stub_is_not_attempted(task):
+    answer = TASKS[task](lambda *_arguments: ...)
+    assert repr(answer) == f"○ not attempted: {task} still returns `...`."
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_the_reference_is_right(task):
+    answer = TASKS[task](TASKS[task].reference)
+    assert answer.right, answer
+    assert re.fullmatch(rf"✓ right: {task} passes all \d+ cases\.", repr(answer))
+
+
+@pytest.mark.parametrize(("task", "function", "_text"), table("right"))
+def test_another_right_way_is_right(task, function, _text):
+    assert TASKS[task](function).right, TASKS[task](function)
+
+
+@pytest.mark.parametrize(("task", "function", "text"), table("wrong"))
+def test_a_wrong_answer_is_named_by_its_fault(task, function, text):
+    answer = TASKS[task](function)
+    assert answer.verdict == "wrong", answer
+    assert text in answer.says
+
+
+@pytest.mark.parametrize(("task", "function", "text"), table("error"))
+def test_an_error_shows_the_input_that_broke_it(task, function, text):
+    answer = TASKS[task](function)
+    assert answer.verdict == "error", answer
+    assert answer.says.startswith(f"{task}(")
+    assert text in answer.says
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_every_fault_is_told_by_a_listed_wrong_answer(task):
+    told = [TASKS[task](function).says for function, _ in ANSWERS[task]["wrong"].values()]
+    for fault in TASKS[task].faults:
+        assert any(fault.says in says for says in told), fault.says
+
+
+@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize(
+    "nonsense",
+    [None, "text", (), [], [[0], [0, 1]], {}, np.nan, np.inf, -1, True, np.zeros((0, 2)), np.full(3, np.nan), object()],
+    ids=repr,
+)
+def test_nonsense_gets_an_answer(task, nonsense):
+    answer = TASKS[task](lambda *_arguments: nonsense)
+    assert answer.verdict == "wrong"
+    assert "0x" not in answer.says
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_no_function_at_all(task):
+    assert repr(TASKS[task](0.5)) == f"! error: {task} must be a function, got 0.5."
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_the_answer_is_the_same_on_every_run(task):
+    first, again = (TASKS[task](lambda *_arguments: 0.123456) for _ in range(2))
+    assert first == again
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_a_lesson_goes_on_with_the_right_function(task):
+    check = TASKS[task]
+    mine, open_task = check.yours_or_ours(check.reference), check.yours_or_ours(lambda *_arguments: ...)
+    assert repr(mine) == f"{task}: the lesson goes on with yours."
+    assert repr(open_task) == f"{task}: the lesson goes on with the library's, because yours is: not attempted."
+    args = next(iter(check.cases(np.random.default_rng(0))))
+    assert check.judge(open_task(*args), check.reference(*args), args) is None
+
+
+def test_what_a_function_prints_and_warns_stays_quiet(capsys):
+    def talks(origin, direction, a, b):
+        print("here", np.float64(1.0) / np.float64(0.0))
+        return pk.checks.ray_segment.reference(origin, direction, a, b)
+
+    assert pk.checks.ray_segment(talks).right
+    assert capsys.readouterr().out == ""
+
+
+def test_a_number_as_text_is_html_with_sign_and_word():
+    for verdict in SIGNS:
+        html = Answer(verdict, "a < b\nnext")._repr_html_()
+        assert f"{SIGNS[verdict]} {verdict}" in html
+        assert "a &lt; b<br>next" in html
+
+
+def luminance(color):
+    parts = [int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts]
+    return float(np.dot(linear, [0.2126, 0.7152, 0.0722]))
+
+
+@pytest.mark.parametrize("color", COLORS.values())
+def test_letters_have_enough_contrast_to_white(color):
+    assert 1.05 / (luminance(color) + 0.05) >= 4.5
+
+
+def test_a_faulty_way_that_cannot_do_every_case_names_no_fault():
+    check = Check("f", abs, lambda _rng: [(1.0,), (-1.0,)], judges.number(), (Fault("never", like=lambda _x: 1 / 0),))
+    assert check(lambda x: x).says == "in 1 of 2 cases. For example f(x=-1): got -1, expected 1."
+
+
+CIRCLE, LINE = pk.Circle((1, 2), 0.5), pk.fit_line([(0, 1), (1, 2)])
+JUDGED = [
+    ("number, right", judges.number("m"), 1, 1.0, None),
+    ("number, an array of one", judges.number("m"), [1.0], 1.0, r"got \[1\], expected a number such as 1 m"),
+    ("number, off", judges.number("m"), 2.0, 1.0, "got 2 m, expected 1 m"),
+    ("number, infinite", judges.number("m"), np.inf, 1.0, "got inf m, expected 1 m"),
+    ("number, both infinite", judges.number("m"), np.inf, np.inf, None),
+    ("number, the other infinity", judges.number("m"), -np.inf, np.inf, "got -inf m, expected inf m"),
+    ("number, nan", judges.number(), np.nan, 1.0, "got nan, expected 1"),
+    ("array, right", judges.array(), [[1, 2]], [[1.0, 2.0]], None),
+    ("array, shape", judges.array(), [1, 2], [[1.0, 2.0]], r"got an array of shape \(2,\), expected shape \(1, 2\)"),
+    ("array, off", judges.array("m"), [1.0, 5.0], [1.0, 2.0], r"got 5 m at \[1\], expected 2 m"),
+    ("array, nan", judges.array(), [1.0, np.nan, 7.0], [1.0, np.inf, 2.0], r"got nan at \[1\], expected inf"),
+    ("groups, renamed", judges.groups(), [5, 5, 2], [0, 0, 1], None),
+    ("groups, one for two", judges.groups(), [0, 0, 0], [0, 0, 1], "got 1 groups, expected 2"),
+    ("groups, mixed", judges.groups(), [0, 1, 0, 1], [0, 0, 1, 1], "not every point is with its own"),
+    ("groups, strays", judges.groups(), [0, 0, -1], [0, 0, 1], "got 1 strays, expected 0"),
+    ("groups, too few", judges.groups(), [0, 0], [0, 0, 1], "expected one label for each of the 3 points"),
+    ("points, other order", judges.points_in_any_order(), [(0, 1), (0, 0)], [(0, 0), (0, 1)], None),
+    (
+        "points, twice the same",
+        judges.points_in_any_order(),
+        [(0, 0), (0, 0)],
+        [(0, 0), (0, 1)],
+        r"got \(0, 0\) m, exp",
+    ),
+    ("points, too few", judges.points_in_any_order(), [(0, 0)], [(0, 0), (0, 1)], "got 1 points, expected 2"),
+    ("points, nan", judges.points_in_any_order(), [(0, np.nan)], [(0, 0)], "expected finite numbers"),
+    ("circle, right", judges.circle(), (1, 2, 0.5), CIRCLE, None),
+    ("circle, in two parts", judges.circle(), ((1, 2), 0.5), CIRCLE, None),
+    ("circle, small", judges.circle(), (1, 2, 0.4), CIRCLE, r"got a radius of 0.4 m, expected 0.5 m \(-20 %\)"),
+    ("circle, aside", judges.circle(), (1, 2.001, 0.5), CIRCLE, "the centre is off by 1 mm"),
+    ("circle, none", judges.circle(), None, None, None),
+    ("circle, none but one", judges.circle(), None, CIRCLE, "got None, expected Circle"),
+    ("line, right", judges.line(), LINE.turned_round(), LINE, None),
+    ("line, turned", judges.line(), (LINE.angle + np.radians(10), LINE.offset), LINE, "turned by 10 degrees"),
+    ("line, shifted", judges.line(), (LINE.angle, LINE.offset + 0.001), LINE, "off by 1 mm"),
+    ("line, no line", judges.line(), 3, LINE, "got 3, expected a line"),
+]
+
+
+@pytest.mark.parametrize(("judge", "got", "expected", "text"), [row[1:] for row in JUDGED], ids=[r[0] for r in JUDGED])
+def test_a_judge_says_what_is_off(judge, got, expected, text):
+    off = judge(got, expected, ())
+    assert off is None if text is None else re.search(text, off), off
+
+
+def test_the_stub_in_a_lesson_has_the_argument_names_of_its_check():
+    """What an error quotes are the names that a student has before them."""
+    import json
+
+    found = set()
+    for notebook in sorted((FOLDER.parent.parent / "notebooks").glob("*.ipynb")):
+        for cell in json.loads(notebook.read_text(encoding="utf-8"))["cells"]:
+            if cell["cell_type"] != "code":
+                continue
+            for node in ast.walk(ast.parse("".join(cell["source"]))):
+                if isinstance(node, ast.FunctionDef) and node.name in TASKS:
+                    names = TASKS[node.name].reference.__code__.co_varnames
+                    mine = [argument.arg for argument in node.args.args]
+                    assert list(itertools.islice(names, len(mine))) == mine
+                    found.add(node.name)
+    assert found <= set(TASKS)

@@ -1,0 +1,288 @@
+"""Sliders: each lesson's picture at every corner of its box, the panel in a notebook, and the pictures' own text."""
+
+import re
+import time
+from html import escape
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+import primkit as pk
+from primkit.plots.look import KIND_COLORS
+from primkit.widgets.drawing import (
+    MARKERS,
+    Frame,
+    board_frame,
+    picture,
+    round_ticks,
+    sentence,
+    side_by_side,
+    size_of,
+    square_frame,
+    what_it_says,
+)
+from primkit.widgets.slider import Choice, Explorer, Slider, explore
+
+SLIDERS = {factory.__name__: factory for factory in pk.widgets.SLIDERS}
+CORNERS = [
+    pytest.param(name, corner, id=f"{name}-{'-'.join(map(str, corner.values()))}")
+    for name, factory in SLIDERS.items()
+    for corner in factory().corners()
+]
+KEY_TO_PICTURE = 0.025  # s: with the browser's share this stays fluent
+
+
+def elements(svg):
+    """Return the SVG's elements by tag; text that is not well-formed raises."""
+    return [element.tag.split("}")[-1] for element in ElementTree.fromstring(svg).iter()]
+
+
+def is_sound(svg):
+    """Hold what every picture of the course must have."""
+    tags = elements(svg)
+    assert tags[0] == "svg"
+    assert tags[1:3] == ["title", "desc"]
+    assert re.search(r"\[[^\]]+\]", svg), "an axis has no unit"
+    assert not re.search(r"\bnan\b|\binf\b", re.sub(r"<desc>.*?</desc>|<text.*?</text>", "", svg))
+    assert not re.search(r"\.\d\d", "".join(re.findall(r' d="([^"]*)"', svg))), "more than a tenth of a pixel"
+    assert what_it_says(svg).endswith(".")
+    assert not re.search(r'\bid="', svg), "ids clash when a page has two pictures"
+
+
+@pytest.mark.parametrize(("name", "corner"), CORNERS)
+def test_a_slider_draws_at_every_corner(name, corner):
+    slider = SLIDERS[name]()
+    svg = slider.draw(**corner)
+    is_sound(svg)
+    assert size_of(svg) == size_of(slider.draw())
+    assert slider.draw(**corner) == svg
+
+
+@pytest.mark.parametrize("name", SLIDERS)
+def test_every_control_changes_the_picture(name):
+    """From some corner at least: noise changes nothing where nothing is hit."""
+    slider = SLIDERS[name]()
+    for control in slider.controls:
+        bases = [{}, *slider.settings.values(), *slider.corners()[:64]]
+        pairs = ((slider.draw(**base | {control.name: end}) for end in control.ends) for base in bases)
+        assert any(len(set(pair)) > 1 for pair in pairs), control.name
+
+
+@pytest.mark.parametrize("name", SLIDERS)
+def test_a_slider_is_quick_enough(name):
+    slider = SLIDERS[name]()
+
+    def seconds(corner):
+        start = time.perf_counter()
+        slider.draw(**corner)
+        return time.perf_counter() - start
+
+    slowest = max(slider.corners(), key=seconds)
+    assert min(seconds(slowest) for _ in range(5)) <= KEY_TO_PICTURE, slowest
+
+
+@pytest.mark.parametrize("name", SLIDERS)
+def test_the_twin_holds_every_named_setting(name):
+    slider = SLIDERS[name]()
+    twin = slider.twin()
+    assert len(slider.settings) >= 3
+    assert all(escape(setting) in twin._repr_svg_() for setting in slider.settings)
+    assert len({slider.draw(**values) for values in slider.settings.values()}) == len(slider.settings)
+    assert twin._repr_svg_() == slider.twin()._repr_svg_()
+    assert repr(twin) == f"{slider!r}, its named settings"
+    elements(twin._repr_svg_())
+
+
+@pytest.mark.parametrize("name", SLIDERS)
+def test_the_panel_has_a_named_control_for_each_value_and_a_button_for_each_setting(name):
+    import ipywidgets
+
+    slider = SLIDERS[name]()
+    *controls, row, image, readout = slider.panel.children
+    assert [control.value for control in controls] == list(slider.start.values())
+    assert all(control.description for control in controls)
+    assert [button.description for button in row.children] == list(slider.settings)
+    assert all(isinstance(button, ipywidgets.Button) for button in row.children)
+    row.children[-1].click()
+    last = list(slider.settings.values())[-1]
+    assert [control.value for control in controls] == pytest.approx(list(last.values()))
+    assert image.value == slider.draw(**last)
+    assert 'aria-live="polite"' in readout.value
+    assert slider.failure is None
+
+
+def ring(radius, words="a"):
+    if radius > 0.35:
+        raise ValueError(f"radius must be at most 0.35 m, got {radius:g} < or so")
+    frame = board_frame()
+    return picture(frame, frame.circle((0, 0), radius), title=words, says=f"{radius:g}.")
+
+
+CONTROLS = Slider("radius", 0.1, 0.4, 0.1, start=0.2, unit="m"), Choice("words", ("a", "b"), start="a")
+
+
+def rings(**settings):
+    return explore(ring, *CONTROLS, settings=settings)
+
+
+def test_moving_a_control_redraws_in_place():
+    slider = rings()
+    radius, _words, _row, image, readout = slider.panel.children
+    assert radius.description == "radius [m]"
+    radius.value = 0.3
+    assert image.value == ring(0.3)
+    assert ">0.3.<" in readout.value
+
+
+def test_a_named_setting_redraws_once():
+    calls = []
+
+    def counted(radius, words):
+        calls.append((radius, words))
+        return ring(radius, words)
+
+    slider = explore(counted, *CONTROLS, settings={"both": {"radius": 0.1, "words": "b"}})
+    row = slider.panel.children[-3]
+    calls.clear()
+    row.children[0].click()
+    assert calls == [(0.1, "b")]
+
+
+def test_an_error_is_a_sentence_in_the_picture_s_place_and_is_kept():
+    slider = rings()
+    radius, _words, _row, image, readout = slider.panel.children
+    size = size_of(image.value)
+    radius.value = 0.4
+    message = "This could not be drawn. ValueError: radius must be at most 0.35 m, got 0.4 < or so"
+    assert what_it_says(image.value) == message
+    assert size_of(image.value) == size
+    assert "at most 0.35 m" in readout.value
+    assert isinstance(slider.failure, ValueError)
+    radius.value = 0.3
+    assert slider.failure is None
+    assert image.value == ring(0.3)
+
+
+def test_an_error_reaches_who_calls_draw():
+    with pytest.raises(ValueError, match=r"radius must be at most 0\.35 m"):
+        rings().draw(radius=0.4)
+    with pytest.raises(ValueError, match=r"radius must be at most 0\.35 m"):
+        rings(large={"radius": 0.4}).twin()
+
+
+def test_an_error_at_the_start_is_not_hidden():
+    with pytest.raises(ValueError, match="at most"):
+        explore(
+            ring, Slider("radius", 0.1, 0.4, 0.1, start=0.4), Choice("words", ("a",), start="a")
+        )._repr_mimebundle_()
+
+
+def test_what_a_notebook_stores_is_one_line_that_stays_the_same():
+    bundle = rings()._repr_mimebundle_()
+    assert bundle["text/plain"] == "Slider: radius, words"
+    assert set(bundle) == {"text/plain", "application/vnd.jupyter.widget-view+json"}
+
+
+def test_the_corners_are_those_of_the_box_and_all_options():
+    assert rings().corners() == [{"radius": r, "words": w} for r in (0.1, 0.4) for w in ("a", "b")]
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"far": {"radius": 7}}, "setting 'far' must have values that its controls hold, got radius = 7"),
+        ({"between": {"radius": 0.25}}, "got radius = 0.25"),
+        ({"new": {"angle": 1}}, "got angle = 1"),
+        ({"word": {"words": "c"}}, "got words = 'c'"),
+    ],
+)
+def test_a_setting_that_the_controls_do_not_hold_is_refused(settings, message):
+    with pytest.raises(ValueError, match=re.escape(message)):
+        rings(**settings)
+
+
+def test_controls_must_hold_their_start():
+    with pytest.raises(ValueError, match="slider 'x' must have low <= start <= high and a step > 0"):
+        Slider("x", 0, 1, 1, start=2)
+    with pytest.raises(ValueError, match="choice 'x' must start with one of its options, got 'c'"):
+        Choice("x", ("a", "b"), start="c")
+
+
+def test_a_twin_needs_settings():
+    with pytest.raises(ValueError, match="a twin needs named settings, got none"):
+        rings().twin()
+
+
+# --- drawing ----------------------------------------------------------------------------------------------------
+
+
+def test_a_frame_maps_its_corners_to_the_corners_of_the_axes():
+    frame = Frame((0, 2), (-1, 1), width=175, height=175)
+    assert frame.at([(0, -1), (2, 1), (1, 0)]) == [[60, 130], [160, 30], [110, 80]]
+
+
+@pytest.mark.parametrize("make", [lambda: board_frame(1.0), lambda: square_frame((0.1, 0.2), 0.05)])
+def test_boards_have_one_scale_both_ways(make):
+    frame = make()
+    assert frame.scale[0] == pytest.approx(frame.scale[1])
+
+
+def test_a_tie_is_rounded_the_same_way_from_both_sides():
+    frame = Frame((0, 100), (0, 100), width=175, height=175)  # a pixel for a unit
+    places = [frame.at([(0.25 + tiny, 0)])[0][0] for tiny in (-1e-9, 0, 1e-9)]
+    assert places == [60.3, 60.3, 60.3]
+
+
+def test_a_shape_is_drawn_in_its_kind_s_colour():
+    frame = board_frame()
+    for shape in pk.random_world(4, kinds=list(KIND_COLORS), rng=0).shapes:
+        assert KIND_COLORS[shape.kind] in frame.shape(shape)
+
+
+@pytest.mark.parametrize("marker", ["dot", "ring", "cross", *MARKERS])
+def test_no_points_draw_nothing_and_each_point_is_drawn_once(marker):
+    frame = board_frame()
+    assert frame.points(np.empty((0, 2)), marker=marker) == ""
+    drawn = frame.points([(0, 0), (0.1, 0.1), (0.2, 0)], marker=marker)
+    starts = {"cross": 3}.get(marker, 3)
+    assert len(re.findall(r"M", drawn)) == starts
+
+
+def test_words_cannot_break_the_picture():
+    frame = board_frame()
+    svg = picture(frame, frame.text((0, 0), "a < b & c"), title="<b>", says='"quoted" & <told>.')
+    elements(svg)
+    assert what_it_says(svg) == '"quoted" & <told>.'
+
+
+def test_small_multiples_tell_all_their_sentences():
+    pictures = [ring(0.1), ring(0.2)]
+    svg = side_by_side(pictures, ["small", "large"], columns=2)
+    assert what_it_says(svg) == "small: 0.1. large: 0.2."
+    assert size_of(svg) == (850, size_of(pictures[0])[1] + 26)
+    elements(svg)
+
+
+def test_a_sentence_is_a_picture():
+    svg = sentence(200, 100, "a long sentence that needs more than one line & more")
+    assert elements(svg).count("text") >= 3
+    assert size_of(svg) == (200, 100)
+
+
+@pytest.mark.parametrize(("low", "high"), [(-0.5, 0.5), (0, 1), (0, 7), (0.001, 0.004), (-30, 1000), (0, 12345)])
+def test_ticks_are_few_and_inside(low, high):
+    ticks = round_ticks(low, high)
+    assert 3 <= len(ticks) <= 6
+    assert low <= ticks[0]
+    assert ticks[-1] <= high
+
+
+def test_something_else_is_no_picture():
+    with pytest.raises(ValueError, match="a picture must be SVG text from picture"):
+        size_of("<p>")
+
+
+def test_a_lesson_reaches_its_slider_by_name():
+    assert isinstance(pk.widgets.rays(), Explorer)
+    assert pk.widgets.rays() is pk.widgets.rays()
