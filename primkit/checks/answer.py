@@ -128,7 +128,7 @@ class Check:
     judge: Judge
     faults: tuple[Fault, ...] = ()
 
-    def __call__(self, mine: Callable[..., Any]) -> Answer:
+    def __call__(self, mine: Any) -> Answer:
         """Judge a student's function."""
         if not callable(mine):
             return Answer("error", f"{self.name} must be a function, got {shown(mine)}.")

@@ -119,7 +119,7 @@ class Frame:
         self, center: ArrayLike, radius: float, color: str = BLUE, width: float = 2, dash: str = "", fill: float = 0
     ) -> str:
         """Draw a circle; ``fill`` is the opacity inside. Only for frames with the same scale both ways."""
-        ((x, y),) = self.at([center])
+        ((x, y),) = self.at(center)
         inside = f'fill="{color}" fill-opacity="{fill:g}"' if fill else 'fill="none"'
         line = f' stroke-dasharray="{dash}"' if dash else ""
         r = _n(abs(radius) * self.scale[0])
@@ -130,7 +130,7 @@ class Frame:
         color = color or KIND_COLORS[shape.kind]
         if isinstance(shape, Circle):
             return self.circle(shape.center, shape.radius, color, width, dash, fill)
-        edge = {"stroke": color, "stroke_width": width, "stroke_dasharray": dash} if width else {}
+        edge: dict[str, str | float] = {"stroke": color, "stroke_width": width, "stroke_dasharray": dash} if width else {}
         return path(_through(self.at(shape.vertices)) + "Z", fill=color, fill_opacity=fill, **edge)
 
     def robot(self, pose: ArrayLike, color: str = INK, size: float = 9) -> str:
@@ -151,7 +151,7 @@ class Frame:
         size: float = LETTERS,
     ) -> str:
         """Write words at a place, moved by ``shift`` pixels (right, down), on a white rim to be read on lines."""
-        ((x, y),) = self.at([where])
+        ((x, y),) = self.at(where)
         return words_at(x + shift[0], y + shift[1], words, color=color, anchor=anchor, size=size, rim=True)
 
     def legend(self, entries: Sequence[tuple[str, str, str]], corner: str = "top left") -> str:
