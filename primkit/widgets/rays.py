@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..lidar import Lidar, scan
-from ..plots.look import ORANGE, PALE, VERMILION
+from ..plots.look import BLUE, GREY, INK, ORANGE, PALE, VERMILION
 from ..shapes import Circle, Polygon
 from ..world import World
-from .drawing import board_frame, picture
-from .slider import Explorer, Slider, explore
+from .drawing import Frame, board_frame, picture
+from .slider import Explorer, Picture, Slider, explore
 
 BOARD = World(
     [
@@ -80,3 +80,32 @@ def _says(beams: int, n: int, ranges: NDArray[np.float64], reach: float, noise: 
         return f"The robot stands inside a shape: all {beams} beams read inf."
     near = f"; the nearest hit is {100 * ranges.min():.1f} cm away" if n else ""
     return f"{n} of {beams} beams meet an outline within {reach:g} m, with noise of {noise:g} mm{near}."
+
+
+def diagram() -> Picture:
+    """Return the drawing behind the lesson's formula: where the beam p + t u meets the wall a + s (b - a)."""
+    p, u, a, b = np.array([[0.05, 0.05], [0.8, 0.6], [0.19, 0.33], [0.44, 0.08]])
+    t, s = np.linalg.solve(np.column_stack([u, a - b]), a - p)  # p + t u = a + s (b - a)
+    hit = p + t * u
+    frame = Frame((0.0, 0.55), (0.0, 0.4), width=525, height=402)
+    svg = picture(
+        frame,
+        frame.segments([p], [p + 0.6 * u], PALE, 1.5, "5 4"),
+        frame.segments([a], [b], INK, 4),
+        frame.segments([a], [a + s * (b - a)], BLUE, 4),
+        frame.segments([p], [hit], ORANGE, 3),
+        frame.segments([p], [p + 0.1 * u], VERMILION, 5),
+        frame.points([hit], VERMILION, "ring", 14),
+        frame.points([a, b], INK, "square", 8),
+        frame.robot([*p, np.arctan2(u[1], u[0])]),
+        frame.text(p, "p", shift=(-4, 24), size=16),
+        frame.text(p + 0.1 * u, "u (length 1, drawn short)", VERMILION, shift=(6, 14), size=14),
+        frame.text(p + 0.21 * u, "t u", INK, "end", (-8, -6), 16),
+        frame.text(a, "a", shift=(-20, -2), size=16),
+        frame.text(b, "b", shift=(10, 14), size=16),
+        frame.text(a + 0.6 * s * (b - a), "s (b - a)", BLUE, shift=(8, -10), size=16),
+        frame.text(hit, "hit", GREY, shift=(14, 2), size=14),
+        title="Two ways to the same point",
+        says=f"From p the beam goes {t:.2g} m along u, from a the wall goes {s:.2g} of the way to b: both end at the hit.",
+    )
+    return Picture(svg, "Diagram: a beam meets a wall")
