@@ -23,7 +23,9 @@ ORDER = (
     *(
         "circles",
         "outlines",
+        "scatter",
         "refine",
+        "evidence",
         "guess",
         "explain",
         "certainty",

@@ -1,5 +1,11 @@
-"""The lessons' form: nbval compares their outputs, and passes what it has nothing to compare with; this does not."""
+"""The lessons' form: nbval compares their outputs, and passes what it has nothing to compare with; this does not.
 
+Each rule is a function from a notebook to a list of sentences, one for each breach. It is held on every lesson, and
+shown a lesson with one thing broken, which it must report.
+"""
+
+import ast
+import copy
 import json
 import re
 from itertools import pairwise
@@ -8,59 +14,365 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
-LESSONS = sorted((ROOT / "notebooks").glob("*.ipynb"))
+LESSONS = {path.stem: path for path in sorted((ROOT / "notebooks").glob("*.ipynb"))}
+MODEL = "01_see_with_rays"  # the lesson that the broken examples are made from
+
+CELLS, WORDS = (25, 40), (1200, 2000)
+CELL_WORDS, CELL_LINES, SETUP_LINES = 250, 20, 5
+FILE_SIZE = 1_000_000  # bytes
+
+# A lesson's parts in their order: what to look for, in the text or in the code.
+PARTS = {
+    "at a glance": r"^\*\*At a glance\*\* · \d+ minutes · \*You will be able to\* .+",
+    "the end result first": r"^## Where we are going",
+    "a prediction": r"^\*\*Predict",
+    "a naive attempt": r"^## The first idea fails",
+    "the idea": r"^## The idea",
+    "the steps": r"^## Build it",
+    "your turn": r"^## Your turn",
+    "a slider": r"^## Twiddle",
+    "failures": r"^## Break it",
+    "the library's version": r"^## The library's version",
+    "a quiz": r"^## Quiz",
+    "back to the prediction": r"^\*\*Back to your prediction",
+    "a recap": r"^## Recap",
+    "on your own": r"^## On your own",
+    "further reading": r"^## Further reading",
+}
+# The first lesson only walks through: each idea has its own lesson later, so it has neither maths nor a quiz, and is
+# shorter. It counts its steps in its headings.
+WALK = ("at a glance", "the end result first", "a prediction", "back to the prediction", "your turn", "a slider")
+WALKS = {"00_start_here": ((*WALK, "failures", "a recap"), (500, 2000))}
+
+QUESTION = r"^\*\*\d\. "
+OPTION = r"<details><summary>(.+?)</summary>(.*?)</details>"
 
 
-@pytest.fixture(params=LESSONS, ids=[lesson.stem for lesson in LESSONS])
-def lesson(request):
-    return json.loads(request.param.read_text(encoding="utf-8")) | {"size": request.param.stat().st_size}
+def source(cell):
+    return "".join(cell["source"])
 
 
 def code_cells(lesson):
     return [cell for cell in lesson["cells"] if cell["cell_type"] == "code"]
 
 
+def text_cells(lesson):
+    return [source(cell) for cell in lesson["cells"] if cell["cell_type"] == "markdown"]
+
+
 def text(lesson):
-    return "\n\n".join("".join(cell["source"]) for cell in lesson["cells"] if cell["cell_type"] == "markdown")
+    """Return the whole text, without blocks of code: a comment in them is no heading."""
+    return re.sub(r"^```.*?^```", "", "\n\n".join(text_cells(lesson)), flags=re.MULTILINE | re.DOTALL)
 
 
-def test_there_is_a_lesson():
-    assert LESSONS
+def section(lesson, heading):
+    """Return the text below a heading of level two."""
+    found = re.search(rf"^## {heading}\b.*?\n(.*?)(?=^## |\Z)", text(lesson), re.MULTILINE | re.DOTALL)
+    return found[1] if found else ""
 
 
-def test_every_code_cell_was_run_in_order(lesson):
-    assert [cell["execution_count"] for cell in code_cells(lesson)] == list(range(1, len(code_cells(lesson)) + 1))
+def outputs(cell, kind):
+    return [output["data"][kind] for output in cell["outputs"] if kind in output.get("data", {})]
 
 
-def test_no_cell_failed_and_none_is_silent_without_reason(lesson):
+def not_run_in_order(lesson):
+    counts = [cell["execution_count"] for cell in code_cells(lesson)]
+    return [] if counts == list(range(1, len(counts) + 1)) else [f"cells were run as {counts}"]
+
+
+def failed_or_silent(lesson):
+    breaches = []
     for cell in code_cells(lesson):
-        assert all(output["output_type"] != "error" for output in cell["outputs"])
-        assert cell["outputs"], "a cell without output is compared with nothing: " + "".join(cell["source"])
+        if any(output["output_type"] == "error" for output in cell["outputs"]):
+            breaches.append(f"failed: {source(cell)}")
+        if any(output.get("name") == "stderr" for output in cell["outputs"]):
+            breaches.append(f"warned: {source(cell)}")
+        if not cell["outputs"]:
+            breaches.append(f"without output it is compared with nothing: {source(cell)}")
+    return breaches
 
 
-def test_no_cell_calls_the_shell_or_is_too_long(lesson):
-    for cell in code_cells(lesson):
-        lines = "".join(cell["source"]).splitlines()
-        assert not any(line.lstrip().startswith(("!", "%")) for line in lines)
-        assert len(lines) <= 20
+def shell(lesson):
+    lines = [line for cell in code_cells(lesson) for line in source(cell).splitlines()]
+    return [f"calls the shell or the notebook: {line}" for line in lines if line.lstrip().startswith(("!", "%"))]
 
 
-def test_one_title_and_headings_in_order(lesson):
+def long_cells(lesson):
+    long = [f"over {CELL_LINES} lines: {source(c)}" for c in code_cells(lesson) if source(c).count("\n") >= CELL_LINES]
+    return long + [f"over {CELL_WORDS} words: {t}" for t in text_cells(lesson) if len(t.split()) > CELL_WORDS]
+
+
+def setup(lesson):
+    first = code_cells(lesson)[0]
+    printed = "".join(line for output in first["outputs"] for line in output.get("text", []))
+    breaches = [] if source(first).count("\n") < SETUP_LINES else [f"setup of over {SETUP_LINES} lines"]
+    return breaches + ([] if printed.count("\n") == 1 else ["setup does not print one line"])
+
+
+def headings(lesson):
     levels = [len(marks) for marks in re.findall(r"^(#+) ", text(lesson), re.MULTILINE)]
-    assert levels[0] == 1
-    assert levels.count(1) == 1
-    assert all(after <= before + 1 for before, after in pairwise(levels))
+    breaches = [] if levels[:1] == [1] and levels.count(1) == 1 else ["not one title at the top"]
+    return breaches + ["a level is skipped" for before, after in pairwise(levels) if after > before + 1]
 
 
-def test_every_picture_is_followed_by_what_it_shows(lesson):
-    cells = lesson["cells"]
-    for cell, following in zip(cells, [*cells[1:], {"cell_type": "none", "source": ""}], strict=True):
-        shows = any("image/png" in output.get("data", {}) for output in cell.get("outputs", []))
-        if shows:
-            assert "".join(following["source"]).startswith("*Figure: "), "".join(cell["source"])
+def pictures_without_words(lesson):
+    following = [*lesson["cells"][1:], {"cell_type": "none", "source": ""}]
+    return [
+        f"no '*Figure: ...*' after: {source(cell)}"
+        for cell, after in zip(lesson["cells"], following, strict=True)
+        if cell["cell_type"] == "code" and (outputs(cell, "image/png") or outputs(cell, "image/svg+xml"))
+        if not re.match(r"\*Figure: \S.{20,}?\*", source(after), re.DOTALL)
+    ]
 
 
-def test_budget(lesson):
-    assert len(lesson["cells"]) <= 40
-    assert len(text(lesson).split()) <= 2000
-    assert lesson["size"] <= 1_000_000
+def missing_parts(lesson):
+    wanted, _ = WALKS.get(lesson["name"], (tuple(PARTS), None))
+    found = {part: re.search(pattern, text(lesson), re.MULTILINE) for part, pattern in PARTS.items() if part in wanted}
+    breaches = [f"missing: {part}" for part, match in found.items() if match is None]
+    places = [match.start() for part, match in found.items() if match and part in PARTS]
+    return breaches + (
+        ["the parts are not in their order"] if lesson["name"] not in WALKS and places != sorted(places) else []
+    )
+
+
+def slider_without_twin(lesson):
+    """The slider is for who runs the lesson; its twin for who reads it."""
+    cells = code_cells(lesson)
+    shown = [re.search(r"^pk\.widgets\.(\w+)\(\)$", source(cell), re.MULTILINE) for cell in cells]
+    sliders = {match[1] for cell, match in zip(cells, shown, strict=True) if match and is_slider(cell)}
+    twins = {
+        name
+        for name in sliders
+        for cell in cells
+        if f"widgets.{name}().twin(" in source(cell)
+        if outputs(cell, "image/svg+xml")
+    }
+    return ([] if sliders else ["no slider"]) + [f"no twin of {name}" for name in sorted(sliders - twins)]
+
+
+def is_slider(cell):
+    return any("".join(words).startswith("Slider: ") for words in outputs(cell, "text/plain"))
+
+
+def stubs(lesson):
+    """Your turn: a function that returns `...`, what its check says of it, and what the lesson goes on with."""
+    if lesson["name"] in WALKS:
+        return []
+    everything = "\n".join(map(source, code_cells(lesson)))
+    tasks = [node for node in ast.walk(ast.parse(everything)) if isinstance(node, ast.FunctionDef) and is_stub(node)]
+    breaches = [] if tasks else ["no task: a function that returns ..."]
+    for task in tasks:
+        name = task.name
+        if not (ast.get_docstring(task) and task.returns and all(arg.annotation for arg in task.args.args)):
+            breaches.append(f"task {name} has no types or no docstring")
+        if f"pk.checks.{name}({name})" not in everything:
+            breaches.append(f"task {name} is not checked")
+        if f"pk.checks.{name}.yours_or_ours({name})" not in everything:
+            breaches.append(f"task {name} has no reference to go on with")
+    return breaches
+
+
+def is_stub(function):
+    last = function.body[-1]
+    return isinstance(last, ast.Return) and "..." in ast.unparse(last)
+
+
+def poor_quiz(lesson):
+    if lesson["name"] in WALKS:
+        return []
+    questions = re.split(QUESTION, section(lesson, "Quiz"), flags=re.MULTILINE)[1:]
+    breaches = [] if 3 <= len(questions) <= 5 else [f"a quiz of {len(questions)} questions"]
+    for question in questions:
+        options = re.findall(OPTION, question, re.DOTALL)
+        if len(options) < 2 or any(len(feedback.split()) < 3 for _, feedback in options):
+            breaches.append(f"not two options with feedback each: {question}")
+    return breaches
+
+
+def poor_end(lesson):
+    breaches = []
+    if not re.search(r"^\|.*\|\n\|[-| ]+\|\n\|", section(lesson, "Recap"), re.MULTILINE):
+        breaches.append("no table of symbols in the recap")
+    if lesson["name"] not in WALKS:
+        own = section(lesson, "On your own")
+        breaches += [f"on your own has no level {n}" for n in (1, 2) if f"**Level {n}" not in own]
+        breaches += [] if section(lesson, "Further reading").count("\n* ") >= 2 else ["fewer than two to read further"]
+    return breaches
+
+
+def over_budget(lesson):
+    words = len("\n".join(text_cells(lesson)).split())
+    _, (least, most) = WALKS.get(lesson["name"], ((), WORDS))
+    breaches = [] if least <= words <= most else [f"{words} words"]
+    breaches += [] if CELLS[0] <= len(lesson["cells"]) <= CELLS[1] else [f"{len(lesson['cells'])} cells"]
+    return breaches + ([] if lesson["size"] <= FILE_SIZE else [f"{lesson['size']} bytes"])
+
+
+def leftovers(lesson):
+    """What changes with every run is not stored: it would make each new run a change."""
+    breaches = [f"stores when it was run: {source(c)}" for c in code_cells(lesson) if "execution" in c["metadata"]]
+    return breaches + (["stores the widgets' state"] if "widgets" in lesson["metadata"] else [])
+
+
+RULES = (
+    *(not_run_in_order, failed_or_silent, shell, long_cells, setup, headings, pictures_without_words),
+    *(missing_parts, slider_without_twin, stubs, poor_quiz, poor_end, over_budget, leftovers),
+)
+
+
+def load(name):
+    notebook = json.loads(LESSONS[name].read_text(encoding="utf-8"))
+    return notebook | {"size": LESSONS[name].stat().st_size, "name": name}
+
+
+@pytest.fixture(scope="module", params=LESSONS)
+def lesson(request):
+    return load(request.param)
+
+
+def test_the_lessons_are_found():
+    assert MODEL in LESSONS
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.__name__)
+def test_a_lesson_keeps_the_rule(lesson, rule):
+    assert rule(lesson) == []
+
+
+# --- each rule is shown a lesson with one thing broken ----------------------------------------------------------
+
+
+def first(lesson, found):
+    """Return the first cell in whose source a pattern is found."""
+    return next(cell for cell in lesson["cells"] if re.search(found, source(cell), re.MULTILINE))
+
+
+def replaced(found, put):
+    """Break a lesson by replacing the first thing that a pattern finds in its sources."""
+
+    def breaks(lesson):
+        cell = first(lesson, found)
+        cell["source"] = re.sub(found, lambda _match: put, source(cell), count=1, flags=re.MULTILINE)
+
+    return breaks
+
+
+def added(to, words):
+    """Break a lesson by adding words to the first cell with a pattern."""
+
+    def breaks(lesson):
+        cell = first(lesson, to)
+        cell["source"] = source(cell) + words
+
+    return breaks
+
+
+def not_run(lesson):
+    code_cells(lesson)[-1]["execution_count"] = None
+
+
+def silent(lesson):
+    code_cells(lesson)[2]["outputs"] = []
+
+
+def failed(lesson):
+    code_cells(lesson)[2]["outputs"] = [{"output_type": "error", "ename": "NameError"}]
+
+
+def warned(lesson):
+    code_cells(lesson)[2]["outputs"].append({"output_type": "stream", "name": "stderr", "text": ["RuntimeWarning"]})
+
+
+def no_figure(lesson):
+    cell = next(c for c in lesson["cells"] if source(c).startswith("*Figure: "))
+    cell["source"] = "Look at the picture."
+
+
+def no_figure_of_the_twin(lesson):
+    place = next(i for i, c in enumerate(lesson["cells"]) if ".twin(" in source(c))
+    lesson["cells"][place + 1]["source"] = "*Figure: twin*"
+
+
+def two_lines(lesson):
+    code_cells(lesson)[0]["outputs"][0]["text"] = ["one\n", "two\n"]
+
+
+def other_order(lesson):
+    parts = [i for i, c in enumerate(lesson["cells"]) if re.search(r"^## (Recap|Break it)", source(c), re.MULTILINE)]
+    one, other = (lesson["cells"][i] for i in parts)
+    one["source"], other["source"] = source(other), source(one)
+
+
+def no_twin(lesson):
+    first(lesson, r"\.twin\(")["outputs"] = []
+
+
+def no_slider(lesson):
+    for cell in code_cells(lesson):
+        if is_slider(cell):
+            cell["outputs"] = []
+
+
+def too_few_cells(lesson):
+    del lesson["cells"][5 : 5 + len(lesson["cells"]) - CELLS[0] + 1]
+
+
+def too_large(lesson):
+    lesson["size"] = FILE_SIZE + 1
+
+
+def times(lesson):
+    code_cells(lesson)[0]["metadata"]["execution"] = {"iopub.status.busy": "2020-01-01T00:00:00Z"}
+
+
+def views(lesson):
+    lesson["metadata"]["widgets"] = {}
+
+
+BROKEN = {
+    "a cell not run": (not_run_in_order, not_run),
+    "a cell without output": (failed_or_silent, silent),
+    "a cell that failed": (failed_or_silent, failed),
+    "a cell that warned": (failed_or_silent, warned),
+    "a shell cell": (shell, added("^import primkit", "\n!ls")),
+    "a magic": (shell, added("^import primkit", "\n  %time 1")),
+    "a long cell": (long_cells, added("^import primkit", "\n1" * CELL_LINES)),
+    "a long text": (long_cells, added("^## Recap", " word" * CELL_WORDS)),
+    "a long setup": (setup, added("^import primkit", "\n1" * SETUP_LINES)),
+    "a setup that prints two lines": (setup, two_lines),
+    "a second title": (headings, replaced("^## Recap", "# Recap")),
+    "no title": (headings, replaced("^# ", "")),
+    "a skipped level": (headings, replaced("^## Recap", "### Recap\n\n##### Deep")),
+    "a picture without words": (pictures_without_words, no_figure),
+    "a twin with too few words": (pictures_without_words, no_figure_of_the_twin),
+    "parts in another order": (missing_parts, other_order),
+    **{f"no {part}": (missing_parts, replaced(pattern, "nothing")) for part, pattern in PARTS.items()},
+    "no slider shown": (slider_without_twin, no_slider),
+    "no twin": (slider_without_twin, no_twin),
+    "no task": (stubs, lambda lesson: [replaced(r"return \.\.\.", "return 0")(lesson) for _ in range(2)]),
+    "a task without types": (stubs, replaced(r" -> float:", ":")),
+    "a task without docstring": (stubs, replaced(r'"""Return the distance[\s\S]*?"""', "0")),
+    "a task without check": (stubs, replaced(r"pk\.checks\.\w+\(\w+\)", "0")),
+    "a task without reference": (stubs, replaced(r"\.yours_or_ours\(", ".other(")),
+    "two questions": (poor_quiz, lambda lesson: [replaced(QUESTION, "")(lesson) for _ in range(3)]),
+    "an option without feedback": (poor_quiz, replaced(r"</summary>.*</details>", "</summary></details>")),
+    "one option": (poor_quiz, lambda lesson: [replaced(r"<details>", "<p>")(lesson) for _ in range(2)]),
+    "no table": (poor_end, replaced(r"^\|[-| ]+\|$", "")),
+    "one level": (poor_end, replaced(r"\*\*Level 2", "Then")),
+    "nothing to read": (poor_end, replaced(r"^## Further reading[\s\S]*", "## Further reading\n\n* One book.")),
+    "too few words": (over_budget, lambda lesson: [c.update(source="#") for c in lesson["cells"]]),
+    "too many words": (over_budget, added("^## Recap", " word" * WORDS[1])),
+    "too few cells": (over_budget, too_few_cells),
+    "too many cells": (over_budget, lambda lesson: lesson["cells"].extend(lesson["cells"][-1:] * CELLS[1])),
+    "too large a file": (over_budget, too_large),
+    "times": (leftovers, times),
+    "the widgets' state": (leftovers, views),
+}
+
+
+@pytest.mark.parametrize(("rule", "breaks"), BROKEN.values(), ids=BROKEN)
+def test_a_breach_is_reported(rule, breaks):
+    broken = copy.deepcopy(load(MODEL))
+    assert rule(broken) == []
+    breaks(broken)
+    assert len(rule(broken)) >= 1

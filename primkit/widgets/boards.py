@@ -48,12 +48,11 @@ def draw_board(seed: int, shapes: int, noise: float, show: str) -> str:
     kinds = Counter(shape.kind for shape in world.shapes)
     names = " and ".join(count(n, kind) for kind, n in sorted(kinds.items()))
     seen = f"{count(len(points), 'occupied cell')} with noise of {noise:g} mm"
+    says = {POINTS: seen, TRUTH: names, BOTH: f"{names}; {seen}"}
     return picture(
         frame,
         *(frame.shape(shape, width=1) for shape in world.shapes if show != POINTS),
         frame.points(points if show != TRUTH else np.empty((0, 2)), INK, size=2),
-        title=f"Seed {seed}: " + (names if show != POINTS else count(len(points), "occupied cell")),
-        says=f"The board with seed {seed}: "
-        + (seen if show == POINTS else names if show == TRUTH else f"{names}; {seen}")
-        + ".",
+        title=f"Seed {seed}: {count(len(world.shapes), 'shape')}, {count(len(points), 'occupied cell')}",
+        says=f"The board with seed {seed}: {says[show]}.",
     )

@@ -130,7 +130,9 @@ class Frame:
         color = color or KIND_COLORS[shape.kind]
         if isinstance(shape, Circle):
             return self.circle(shape.center, shape.radius, color, width, dash, fill)
-        edge: dict[str, str | float] = {"stroke": color, "stroke_width": width, "stroke_dasharray": dash} if width else {}
+        edge: dict[str, str | float] = (
+            {"stroke": color, "stroke_width": width, "stroke_dasharray": dash} if width else {}
+        )
         return path(_through(self.at(shape.vertices)) + "Z", fill=color, fill_opacity=fill, **edge)
 
     def robot(self, pose: ArrayLike, color: str = INK, size: float = 9) -> str:

@@ -106,6 +106,6 @@ def diagram() -> Picture:
         frame.text(a + 0.6 * s * (b - a), "s (b - a)", BLUE, shift=(8, -10), size=16),
         frame.text(hit, "hit", GREY, shift=(14, 2), size=14),
         title="Two ways to the same point",
-        says=f"From p the beam goes {t:.2g} m along u, from a the wall goes {s:.2g} of the way to b: both end at the hit.",
+        says=f"From p the beam goes {t:.2g} m along u; from a it is {s:.2g} of the way to b: both end at the hit.",
     )
     return Picture(svg, "Diagram: a beam meets a wall")
