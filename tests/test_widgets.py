@@ -264,6 +264,14 @@ def test_small_multiples_tell_all_their_sentences():
     elements(svg)
 
 
+def test_a_wide_picture_is_shown_as_wide_as_a_page():
+    svg = side_by_side([ring(0.1)] * 3, ["a", "b", "c"], columns=3)
+    shown = re.search(r'width="([\d.]+)" height="([\d.]+)" viewBox="0 0 (\d+) (\d+)"', svg)
+    width, height, wide, tall = map(float, shown.groups())
+    assert width == 860 < wide
+    assert width / height == pytest.approx(wide / tall, rel=1e-3)
+
+
 def test_a_sentence_is_a_picture():
     svg = sentence(200, 100, "a long sentence that needs more than one line & more")
     assert elements(svg).count("text") >= 3

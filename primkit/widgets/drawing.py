@@ -30,6 +30,7 @@ from ..shapes import Circle, Shape
 LEFT, RIGHT, TOP, BOTTOM = 60, 15, 30, 45  # px around the axes: numbers, names, title
 LETTERS = 12  # px: the size of all letters but the title's
 FONT = "font-family='DejaVu Sans, Verdana, sans-serif'"
+WIDEST = 860  # px: what fits beside a notebook's margin on most screens; a wider picture is shown smaller
 TIE = 1e-6  # px: lifts 0.25 and its like over the edge, where rounding could go either way
 
 # Outlines of the markers around (0, 0), for a radius of 1; "dot" and "ring" are drawn as circles.
@@ -222,7 +223,7 @@ def picture(frame: Frame, *parts: str, title: str, says: str) -> str:
     return _svg(frame.width, frame.height, title, says, frame.axes() + inside + heading)
 
 
-def side_by_side(pictures: Sequence[str], captions: Sequence[str], *, columns: int = 3, says: str = "") -> str:
+def side_by_side(pictures: Sequence[str], captions: Sequence[str], *, columns: int = 2, says: str = "") -> str:
     """Return pictures of the same size as small multiples in one SVG, with a caption above each."""
     width, height = size_of(pictures[0])
     columns = min(columns, len(pictures))
@@ -307,8 +308,9 @@ def round_ticks(low: float, high: float, most: int = 6) -> tuple[float, ...]:
 
 def _svg(width: int, height: int, title: str, says: str, body: str) -> str:
     """Return an SVG with a white ground that shrinks to narrow columns, and what is said to who cannot see it."""
+    shown = min(1.0, WIDEST / width)
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{_n(shown * width)}" height="{_n(shown * height)}" viewBox="0 0 {width} {height}" '
         f'role="img" style="max-width:100%;height:auto" {FONT}>'
         f"<title>{escape(title)}</title><desc>{escape(says)}</desc>"
         f'<rect width="{width}" height="{height}" fill="white"/>{body}</svg>'

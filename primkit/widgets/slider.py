@@ -151,7 +151,7 @@ class Explorer:
         """Return the values at every corner of the box that the controls span; of choices, all options."""
         return [dict(zip(self.start, values, strict=True)) for values in product(*(c.ends for c in self.controls))]
 
-    def twin(self, columns: int = 3) -> Picture:
+    def twin(self, columns: int = 2) -> Picture:
         """Return the named settings side by side as one picture, for where nothing can be moved."""
         pictures = [self.draw(**values) for values in self.settings.values()]
         if not pictures:
