@@ -2,7 +2,7 @@
 
 In:  a fitted figure, the points that lie on it, and how far they spread.
 Out: ``Certainty``: standard deviations of the centre's coordinates and of the dimensions, metres; infinite for a
-dimension that hangs on a side that was never seen.
+dimension that hangs on a side that was never seen, and for one that is not even known to a centimetre.
 
 >>> from primkit.shapes import Circle
 >>> ring = Circle((0, 0), 0.05).outline(100)
@@ -26,23 +26,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .explain import SIGMAS
 from .outlines import Outlines
 from .refine import shares
+from .scatter import CELL, CELL_STD, SIGMAS
 from .shapes import Circle
 
 Floats = NDArray[np.float64]
-
-CELL = 0.001  # m: side of the grid's cells, as in the paper; all that follows supposes points on such a grid
-CELL_STD = CELL / 12**0.5  # m: a cell's centre lies evenly within half a cell of the point
-# No sensor brings the spread [m] below this: a third more, because neighbours along a side err together.
-LEAST_SPREAD = 1.33 * CELL_STD
 
 # A side was seen when so many points lie on it, over such a length [m], and not near a corner, where they may as well
 # belong to the neighbour: a line over a hidden side touches the last points of both neighbours.
 LEAST_ON_SIDE = 4
 LEAST_STRETCH = 0.008
 CORNER_SPREADS = 4.0
+MOST_STD = 0.01  # m: what is not even known to a centimetre was not measured, but supposed
 STEP = 1e-6  # rad and m: the derivatives' step, far above rounding and far below any curvature
 
 
@@ -191,5 +187,5 @@ def _centroids(corners: Floats) -> Floats:
 
 def _std(slopes: Floats, covariance: Floats, measured: NDArray[np.bool_]) -> tuple[float, ...]:
     """Return sqrt(diag(J C J')), infinite where it was not measured."""
-    variance = np.einsum("ij,jk,ik->i", slopes, covariance, slopes)
-    return tuple(np.where(measured, np.sqrt(variance), np.inf).tolist())
+    std = np.sqrt(np.einsum("ij,jk,ik->i", slopes, covariance, slopes))
+    return tuple(np.where(measured & (std <= MOST_STD), std, np.inf).tolist())

@@ -34,6 +34,7 @@ QUARTERS = np.arange(4) * (np.pi / 2)
 # The frame is drawn in by a twentieth of the points, to lie in the sides and not around them; and once not at all, for
 # sides that were not seen: they lie where the seen ones end.
 FRAME_QUANTILES = np.array([0.05, 0.0])
+CORNER_SHARE = 0.25  # of both sides' lengths, where a corner is cut off
 SECTOR_TURNS = 4  # each turned by a quarter of a sector
 
 
@@ -84,6 +85,41 @@ def guess_rectangles(points: Floats, sides: Outlines, four_sided: Outlines) -> O
     low_or_full = np.tile(FRAME_QUANTILES, sides.angles.shape[1])
     frames = [np.quantile(h, 1 - q, axis=0) for h, q in zip(heights, low_or_full, strict=True)]
     return joined(upright, Outlines(angles, np.array(frames).reshape(-1, 4)))
+
+
+def one_side_more(points: Floats, outline: Outlines) -> Outlines:
+    """Return guesses with one side more than a fitted outline has: each side broken in two, each corner cut off.
+
+    Two sides that hardly bend, or a short one, are taken for one until all the others are in their places.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        Metres.
+    outline : Outlines
+        One row of K sides.
+
+    Returns
+    -------
+    Outlines
+        2 K guesses of K + 1 sides.
+    """
+    k = outline.angles.shape[1]
+    owner = outline.distances(points)[0].argmax(axis=1)
+    begin, end = (ends[0] for ends in outline.spans())
+    along = outline.along(points)[0][np.arange(len(points)), owner]
+    place = (along - begin[owner]) / (end - begin)[owner]  # 0 where a point's side begins, 1 where it ends
+    weights, angles = [], []
+    for side in range(k):
+        own, its_end = owner == side, 1 - CORNER_SHARE
+        corner = (own & (place > its_end)) | ((owner == (side + 1) % k) & (place < CORNER_SHARE))
+        turn = np.mod(outline.angles[0, (side + 1) % k] - outline.angles[0, side], 2 * np.pi)
+        for taken in (own & (place > 0.5), corner):
+            weights.append(np.column_stack([(owner[:, None] == np.arange(k)) & ~taken[:, None], taken]))
+            angles.append([*outline.angles[0], outline.angles[0, side] + turn / 2])
+    start = Outlines(np.array(angles), np.tile([*outline.offsets[0], 0.0], (2 * k, 1)))
+    guess = refit(points, np.array(weights, dtype=float), start)
+    return from_angle_order(guess.angles, guess.offsets)
 
 
 def _closing_lines(points: Floats, reach: float) -> list[Line]:

@@ -19,8 +19,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arguments import as_points, as_positive
-from .certainty import LEAST_SPREAD, certainty
-from .explain import SIGMAS, Candidate, candidates, seen_shares
+from .certainty import certainty
+from .evidence import Candidate, seen_shares
+from .explain import candidates
+from .scatter import LEAST_SPREAD, SIGMAS
 from .shapes import Kind, Shape
 
 Floats = NDArray[np.float64]
@@ -55,7 +57,7 @@ class Detection:
         next, it supposes points on cells of 1 mm; empty from ``PAPER``, which does not ask.
     dimension_std : tuple of float
         Standard deviation of each of ``shape.dimensions``, metres; infinite for one that was not measured,
-        because a side that it hangs on was never seen.
+        because a side that it hangs on was never seen, or that is not even known to a centimetre.
     """
 
     shape: Shape

@@ -25,12 +25,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arguments import as_count, as_points, as_positive, as_rng, check_type
-from .explain import SIGMAS
 from .lines import LINE, find_lines
 from .measure import Detection, detection, spread_of
 from .paper import measure_as_published
 from .regroup import Group, explained, regrouped
-from .scatter import LEAST_SPREAD, spread_across, spread_from_median
+from .scatter import LEAST_SPREAD, SIGMAS, spread_across, spread_from_median
 from .segmentation import Grouping, check_count, segment
 from .steps import Steps
 

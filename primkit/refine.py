@@ -23,16 +23,12 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from .outlines import Outlines
+from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, scatter
 
 Floats = NDArray[np.float64]
 
 # A side that has fewer points than this (shares count in part) has nothing to be fitted to, and stays.
 LEAST_SHARE = 2.0
-# Share of returns that come from nowhere, and the area [m^2] over which those near a shape are spread.
-GHOSTS, GHOST_AREA = 0.02, 0.05
-# Length [m] over which the others are spread. One length for all outlines: were it each outline's own, points seen on
-# a half of a circle would speak for whatever shape closes that half on the shortest way.
-OUTLINE_LENGTH = 0.5
 
 HARD_ROUNDS = 8  # nearly all settle in four or five
 SOFT_ROUNDS = 30  # shares settle slowly around blurred corners; what is left then is far below a cell
@@ -93,7 +89,8 @@ def refine_soft(points: Floats, guess: Outlines, spread: float, *, square: bool 
         The C outlines, settled; or as they were before one of them would have stopped being ``sound``.
     """
     for _ in range(SOFT_ROUNDS):
-        refined = refit(points, shares(points, guess, spread)[0], guess, square=square)
+        share, told, _ = shares(points, guess, spread)
+        refined = refit(points, share * told, guess, square=square)
         if not refined.sound().all():
             break
         change = max(
@@ -112,16 +109,18 @@ def truncated_cost(points: Floats, outlines: Outlines, reach: float) -> Floats:
     return (np.minimum(np.abs(farthest_out), reach) ** 2).sum(axis=1)
 
 
-def shares(points: Floats, outlines: Outlines, spread: float) -> tuple[Floats, Floats]:
+def shares(points: Floats, outlines: Outlines, spread: float) -> tuple[Floats, Floats, Floats]:
     """Return to what share each point belongs to each side, and how likely the points are.
 
-    The model: a point comes from anywhere along the outline, and is moved by Gaussian noise of ``spread``; a
-    few come from nowhere.
+    The model: a point comes from anywhere along the outline, and is moved by noise of ``spread``, as ``scatter``
+    describes it; a few come from nowhere.
 
     Returns
     -------
     shares : array, shape (C, N, K)
         The rest to one is the share of a point that comes from nowhere.
+    told : array, shape (C, N, K)
+        How much each point tells about each side, if it belongs to it: see ``scatter``.
     log_likelihood : array, shape (C,)
         Natural logarithm of the density of all points together.
     """
@@ -129,10 +128,10 @@ def shares(points: Floats, outlines: Outlines, spread: float) -> tuple[Floats, F
     length = (end - begin)[:, None, :]
     t = outlines.along(points) - begin[:, None, :]
     within = ndtr(t / spread) - ndtr((t - length) / spread)  # a side's ends, blurred by the noise
-    across = np.exp(-0.5 * (outlines.distances(points) / spread) ** 2) / (np.sqrt(2 * np.pi) * spread)
+    across, told = scatter(outlines.distances(points), spread)
     density = (1 - GHOSTS) * np.maximum(within, 0.0) * across / OUTLINE_LENGTH
-    total = density.sum(axis=2) + GHOSTS / GHOST_AREA
-    return density / total[..., None], np.log(total).sum(axis=1)
+    total = density.sum(axis=2) + NOWHERE
+    return density / total[..., None], told, np.log(total).sum(axis=1)
 
 
 def refit(points: Floats, weights: Floats, outlines: Outlines, *, square: bool = False) -> Outlines:

@@ -28,9 +28,10 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from .explain import SIGMAS, Candidate, candidates, seen_shares
+from .evidence import Candidate, joint_cost, seen_shares
+from .explain import candidates
 from .measure import Detection, as_detection
-from .refine import GHOST_AREA, GHOSTS
+from .scatter import NOWHERE, SIGMAS
 from .segmentation import LEAST_GROUP, kmeans
 from .shapes import Polygon, Shape
 
@@ -71,11 +72,6 @@ class Group:
         lengths = shape.sides if isinstance(shape, Polygon) else [shape.perimeter]
         return bool(np.average(seen_shares(shape, self.points), weights=lengths) >= CLOSED)
 
-    @property
-    def cost(self) -> float:
-        """Cost of the best explanation; smaller is better. Too few points for any: each comes from nowhere."""
-        return self.ranked[0].cost if self.ranked else float(-2 * len(self.points) * np.log(GHOSTS / GHOST_AREA))
-
 
 @dataclass(frozen=True)
 class _Tried:
@@ -84,6 +80,12 @@ class _Tried:
     halves: dict[Group, tuple[Group, ...]]
     unions: dict[tuple[Group, Group], Group | None]
     won_by: dict[Group, float]
+
+
+def cost_of(groups: Sequence[Group]) -> float:
+    """Return the cost of the groups' best explanations together; points too few for any come from nowhere."""
+    strays = sum(len(g.points) for g in groups if not g.ranked)
+    return joint_cost([g.ranked[0] for g in groups if g.ranked]) - 2 * strays * float(np.log(NOWHERE))
 
 
 def explained(points: Floats, spread: float, seed: int = 0, *, soft: bool = True) -> Group:
@@ -137,7 +139,7 @@ def _margin(group: Group, groups: list[Group], tried: _Tried) -> float:
     others = [tried.won_by.get(group, float("inf")), _gain(tried.halves.get(group, ()), group)]
     for (a, b), union in tried.unions.items():
         if union is not None and group in (a, b) and a in groups and b in groups:
-            others.append(union.cost - a.cost - b.cost)
+            others.append(cost_of([union]) - cost_of([a, b]))
     return min(others)
 
 
@@ -161,7 +163,7 @@ def _split_all(
 
 def _gain(parts: tuple[Group, ...], group: Group) -> float:
     """Return by how much the parts cost more than the whole; infinite without parts."""
-    return sum(part.cost for part in parts) - group.cost if parts else float("inf")
+    return cost_of(parts) - cost_of([group]) if parts else float("inf")
 
 
 def _halves(group: Group, spread: float, n_shapes: int | None, explain: Explain) -> tuple[Group, ...]:
@@ -192,8 +194,9 @@ def _merge_all(
                 plausible = n_shapes is not None or _may_be_one(a, b, spread)
                 tried.unions[a, b] = explain(np.vstack([a.points, b.points])) if plausible else None
             one = tried.unions[a, b]
-            if one is not None and one.ranked and one.cost - a.cost - b.cost < best_gain:
-                best, best_gain = (a, b, one), one.cost - a.cost - b.cost
+            gain = cost_of([one]) - cost_of([a, b]) if one is not None and one.ranked else np.inf
+            if one is not None and gain < best_gain:
+                best, best_gain = (a, b, one), gain
         if best is None:
             break
         a, b, one = best

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import primkit as pk
-from primkit.certainty import CELL_STD, certainty, sides_seen
+from primkit.certainty import certainty, sides_seen
 from primkit.measure import measure_shape
+from primkit.scatter import CELL_STD
 from tests.test_outlines import outline_of
 
 TRIANGLE = pk.Polygon([(-0.08, -0.05), (0.08, -0.05), (0.0, 0.09)])

@@ -6,8 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import primkit as pk
-from primkit.explain import _cost, candidates, seen_shares
-from primkit.measure import LEAST_SPREAD, measure_shape, spread_of
+from primkit.explain import candidates
+from primkit.measure import measure_shape, spread_of
+from primkit.scatter import LEAST_SPREAD
 
 KINDS = ("circle", "triangle", "rectangle", "pentagon")
 
@@ -131,23 +132,6 @@ def test_spread_is_estimated_from_neighbours(std):
 def test_spread_has_the_cells_as_its_floor():
     assert spread_of(pk.Circle((0, 0), 0.08).outline(300)) == LEAST_SPREAD
     assert spread_of([(0, 0)]) == LEAST_SPREAD
-
-
-def test_seen_shares_by_hand():
-    square = pk.Polygon([(0, 0), (0.3, 0), (0.3, 0.3), (0, 0.3)])
-    assert seen_shares(square, np.empty((0, 2))) == (0.0,) * 4
-    below = np.column_stack([np.linspace(0, 0.15, 50), np.zeros(50)])
-    assert seen_shares(square, below)[0] == pytest.approx(0.54, abs=0.03)
-    half = pk.Circle((0, 0), 0.1).outline(100)[:50]
-    assert seen_shares(pk.Circle((0, 0), 0.1), half)[0] == pytest.approx(0.53, abs=0.03)
-
-
-def test_every_fitted_number_has_its_price():
-    """The cost by hand: each parameter costs the logarithm of how far the points narrow it down."""
-    three, five = _cost(-100.0, 6, 200, 0.001), _cost(-100.0, 10, 200, 0.001)
-    assert three == pytest.approx(200 + 6 * np.log(200 / (2 * np.pi) * (1 + 10**2)))
-    assert five - three == pytest.approx(4 * np.log(200 / (2 * np.pi) * 101))
-    assert _cost(-90.0, 6, 200, 0.001) == pytest.approx(three - 20)
 
 
 def test_more_sides_lie_closer_but_do_not_win():

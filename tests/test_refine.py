@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import primkit as pk
+from primkit.guess import one_side_more
 from primkit.outlines import Outlines
 from primkit.refine import refine_hard, refine_soft, refit, shares, truncated_cost
 from tests.test_outlines import outline_of
@@ -108,7 +109,7 @@ def test_strays_do_not_pull():
 def test_shares_are_shares_and_likelihood_falls_with_distance():
     square = Outlines(np.arange(4)[None] * np.pi / 2, np.full((1, 4), 0.1))
     points = np.array([(0.1, 0.0), (0.1, 0.1), (0.0, 0.0), (0.102, 0.0)])
-    share, near = shares(points, square, 0.001)
+    share, _, near = shares(points, square, 0.001)
     assert (share >= 0).all()
     assert (share.sum(axis=2) <= 1).all()
     assert share[0, 0].round(2).tolist() == [1, 0, 0, 0]  # on a side
@@ -116,7 +117,7 @@ def test_shares_are_shares_and_likelihood_falls_with_distance():
     assert share[0, 2].sum() < 1e-6  # in the middle: from nowhere
     assert share[0, 3, 0] < 1.0
     farther_out = np.array([(0.102, 0.0)])
-    assert shares(farther_out, square, 0.001)[1] < shares(points[:1], square, 0.001)[1]
+    assert shares(farther_out, square, 0.001)[2] < shares(points[:1], square, 0.001)[2]
     assert np.isfinite(near).all()
 
 
@@ -125,7 +126,7 @@ def test_the_density_of_one_point_integrates_to_the_outlines_length():
     square = Outlines(np.arange(4)[None] * np.pi / 2, np.full((1, 4), 0.05))
     axis = np.linspace(-0.1, 0.1, 401)
     points = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
-    share, _ = shares(points, square, 0.004)
+    share, _, _ = shares(points, square, 0.004)
     nowhere = 0.02 / 0.05
     density = share.sum(axis=2) * nowhere / np.maximum(1 - share.sum(axis=2), 1e-300)
     assert density.sum() * (axis[1] - axis[0]) ** 2 == pytest.approx(0.98 * 0.4 / 0.5, abs=1e-3)
@@ -145,3 +146,21 @@ def test_points_out_of_reach_do_not_count():
     points = np.vstack([ring, beside])
     assert refine_hard(points, square, 0.01).offsets[0].round(6).tolist() == [0.1] * 4
     assert refine_hard(points, square, 0.05).offsets[0, 0] > 0.105
+
+
+def test_one_side_more_finds_the_short_side_that_was_missed():
+    """A pentagon whose short side a fit with four sides left out: one of the guesses leads to it."""
+    pentagon = pk.Polygon([(0, 0), (0.2, 0), (0.23, 0.03), (0.2, 0.12), (0.02, 0.15)])
+    points = pentagon.outline(500) - pentagon.centroid
+    truth = outline_of(pentagon.moved(-pentagon.centroid))
+    for missed in range(5):
+        kept = np.delete(np.arange(5), missed)
+        four = Outlines(truth.angles[:, kept], truth.offsets[:, kept])
+        if not four.sound()[0]:
+            continue
+        guesses = one_side_more(points, refine_hard(points, four, 0.02))
+        assert len(guesses) == 8
+        refined = refine_hard(points, guesses, 0.005)
+        corners = [o.corners() for o in (refined[i : i + 1] for i in np.flatnonzero(refined.sound()))]
+        gaps = [np.abs(np.sort(c[0], axis=0) - np.sort(truth.corners()[0], axis=0)).max() for c in corners]
+        assert min(gaps) < 0.001, missed

@@ -5,8 +5,8 @@ import pytest
 
 import primkit as pk
 from primkit import regroup
-from primkit.measure import LEAST_SPREAD
-from primkit.regroup import explained
+from primkit.regroup import cost_of, explained
+from primkit.scatter import LEAST_SPREAD
 
 RECTANGLE = pk.Polygon([(-0.1, -0.04), (0.1, -0.04), (0.1, 0.04), (-0.1, 0.04)])
 CIRCLE = pk.Circle((0.2, 0.0), 0.05)
@@ -75,14 +75,14 @@ def test_the_margin_of_a_merger_is_what_it_gained():
     points = RECTANGLE.outline(400)
     pieces = groups_of(points[points[:, 0] < -0.02], points[points[:, 0] > 0.02])
     (one,), (margin,) = regroup.regrouped(pieces, LEAST_SPREAD)
-    assert margin == pytest.approx(sum(p.cost for p in pieces) - one.cost)
+    assert margin == pytest.approx(cost_of(pieces) - cost_of([one]))
     assert 0 < margin < float("inf")
 
 
 def test_the_margin_of_a_split_is_what_it_gained():
     (whole,) = groups_of(np.vstack([RECTANGLE.outline(300), CIRCLE.outline(150)]))
     parts, margins = regroup.regrouped([whole], LEAST_SPREAD)
-    gained = whole.cost - sum(p.cost for p in parts)
+    gained = cost_of([whole]) - cost_of(parts)
     assert all(0 < margin <= gained for margin in margins)  # splitting a half once more may come closer
 
 
@@ -92,7 +92,7 @@ def test_the_margin_of_what_stayed_apart_is_what_merging_would_have_cost():
     pieces = groups_of(box[box[:, 0] < -0.052], arc[arc[:, 0] > 0.0])
     (union,) = groups_of(np.vstack([p.points for p in pieces]))
     _, margins = regroup.regrouped(pieces, LEAST_SPREAD)
-    assert margins == pytest.approx([union.cost - sum(p.cost for p in pieces)] * 2)
+    assert margins == pytest.approx([cost_of([union]) - cost_of(pieces)] * 2)
 
 
 def test_the_margin_is_infinite_where_no_other_grouping_came_into_question():

@@ -21,7 +21,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from ..evaluation import Match, Report
-from ..explain import GAP
+from ..evidence import GAP
 from ..measure import Detection
 from ..shapes import Circle, Polygon, Shape
 from ..world import World
