@@ -190,7 +190,7 @@ def shown(value: Any) -> str:
         inner = ", ".join(map(shown, value))
         text = f"[{inner}]" if isinstance(value, list) else f"({inner})"
     elif isinstance(value, (float, np.floating)):
-        return f"{float(value):.4g}"
+        return f"{float(value) + 0.0:.4g}"  # -0.0 as the 0 that it means
     elif isinstance(value, (int, np.integer)) or value is None:
         return str(value)
     else:

@@ -309,8 +309,9 @@ def round_ticks(low: float, high: float, most: int = 6) -> tuple[float, ...]:
 def _svg(width: int, height: int, title: str, says: str, body: str) -> str:
     """Return an SVG with a white ground that shrinks to narrow columns, and what is said to who cannot see it."""
     shown = min(1.0, WIDEST / width)
+    size = f'width="{_n(shown * width)}" height="{_n(shown * height)}" viewBox="0 0 {width} {height}"'
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{_n(shown * width)}" height="{_n(shown * height)}" viewBox="0 0 {width} {height}" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" {size} '
         f'role="img" style="max-width:100%;height:auto" {FONT}>'
         f"<title>{escape(title)}</title><desc>{escape(says)}</desc>"
         f'<rect width="{width}" height="{height}" fill="white"/>{body}</svg>'
