@@ -27,7 +27,7 @@ _STORY = {
     "world": ("World", "random_world"),
     "robot": ("teleport_poses", "skipped_waypoints"),
     "raycast": ("cast_rays",),
-    "lidar": ("Lidar", "Scans", "scan"),
+    "lidar": ("Lidar", "Scans", "scan", "scan_blocks"),
     "grid": ("Grid",),
     "segmentation": ("segment", "kmeans", "count_by_silhouette", "link"),
     "ransac": ("run_ransac", "trials_needed"),
@@ -69,7 +69,7 @@ if TYPE_CHECKING:
     from .evaluation import Report, evaluate, match
     from .formats import load_scans, load_world, paper_suite, save_scans, save_world
     from .grid import Grid
-    from .lidar import Lidar, Scans, scan
+    from .lidar import Lidar, Scans, scan, scan_blocks
     from .lines import Line, find_lines, fit_line
     from .measure import Detection, measure_shape
     from .pipeline import PAPER, ROBUST, Settings, find_shapes

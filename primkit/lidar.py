@@ -12,12 +12,15 @@ Out: ``Scans``: ``.ranges``, shape (P, B), metres; ``.points()``, the hits, shap
 >>> seen.ranges.shape, round(float(seen.ranges[0, 0]), 3), len(seen.points())
 ((1, 100), 0.15, 9)
 
+A million scans do not fit in memory at once: ``scan_blocks`` hands them out block by block, the same to the last bit.
+
 Source: the sensor is that of the paper's section 3.1; field names follow the LaserScan message of ROS.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from copy import deepcopy
 from dataclasses import dataclass
 
 import numpy as np
@@ -181,25 +184,92 @@ def scan(
     >>> float(scan(World([near, far]), [(0, 0, 0)]).ranges[0, 0])
     inf
     """
-    check_type(world, World, "world must be a World, as in scan(world, poses)")
+    poses = as_poses(poses)
+    return next(_scanned(world, poses, lidar, rng, max(1, len(poses)), "scan(world, poses)"))
+
+
+def scan_blocks(
+    world: World,
+    poses: ArrayLike,
+    lidar: Lidar | None = None,
+    *,
+    size: int = 10_000,
+    rng: int | np.random.Generator | None = None,
+) -> Iterator[Scans]:
+    """Scan the world once from each pose, and hand out the scans block by block.
+
+    For more scans than memory holds: the ranges of a million take 800 MB, a block of ten thousand 8 MB. Together
+    the blocks are what ``scan`` returns, to the last bit, noise included.
+
+    Parameters
+    ----------
+    world, poses, lidar, rng
+        As for ``scan``.
+    size : int
+        Scans in a block; the last one may have fewer.
+
+    Returns
+    -------
+    iterator of Scans
+        At least one, which is empty when there are no poses. Each is computed when it is asked for.
+
+    Raises
+    ------
+    ValueError
+        As ``scan``, or if the size is not a whole number of at least 1; at once, not at the first block.
+
+    Examples
+    --------
+    >>> [len(scans) for scans in scan_blocks(World(), np.zeros((5, 3)), size=2)]
+    [2, 2, 1]
+    """
+    return _scanned(world, as_poses(poses), lidar, rng, as_count(size, "size"), "scan_blocks(world, poses)")
+
+
+def _scanned(
+    world: World, poses: Floats, lidar: Lidar | None, rng: int | np.random.Generator | None, size: int, call: str
+) -> Iterator[Scans]:
+    """Check the arguments and return the blocks."""
+    check_type(world, World, f"world must be a World, as in {call}")
     lidar = Lidar() if lidar is None else lidar
     check_type(lidar, Lidar, "lidar must be a Lidar, such as Lidar()")
-    poses = as_poses(poses)
-    ranges, inside = cast(world, poses, lidar.angles, lidar.range_max, lidar.range_min)
-    _disturb(ranges, lidar, as_rng(rng))
+    faults = _Faults(lidar, len(poses), size, rng)
+    starts = range(0, max(1, len(poses)), size)
+    return (_block(world, poses[start : start + size], lidar, faults) for start in starts)
+
+
+def _block(world: World, poses: Floats, lidar: Lidar, faults: _Faults) -> Scans:
+    angles = lidar.angles
+    ranges, inside = cast(world, poses, angles, lidar.range_max, lidar.range_min)
+    faults.disturb(ranges)
     ranges[inside] = np.inf
-    return Scans(poses, lidar.angles, ranges, inside)
+    return Scans(poses, angles, ranges, inside)
 
 
-def _disturb(ranges: Floats, lidar: Lidar, rng: np.random.Generator) -> None:
-    """Add the sensor's faults to exact ranges, in place; each fault has its own stream of numbers."""
-    noise, losses, ghosts = rng.spawn(3)
-    hit = np.isfinite(ranges)
-    if lidar.noise_std > 0:
-        noisy = ranges + noise.normal(0.0, lidar.noise_std, ranges.shape)
-        ranges[hit] = np.clip(noisy[hit], lidar.range_min, lidar.range_max)
-    if lidar.dropout > 0:
-        ranges[losses.random(ranges.shape) < lidar.dropout] = np.inf
-    if lidar.spurious > 0:
-        ghost = ghosts.random(ranges.shape) < lidar.spurious
-        ranges[ghost] = ghosts.uniform(lidar.range_min, lidar.range_max, int(ghost.sum()))
+class _Faults:
+    """The sensor's faults, each with a stream of numbers of its own, for block after block of scans."""
+
+    def __init__(self, lidar: Lidar, n_scans: int, size: int, rng: int | np.random.Generator | None) -> None:
+        self.lidar = lidar
+        if rng is None and not (lidar.noise_std or lidar.dropout or lidar.spurious):
+            return  # nothing is random: seeding takes longer than a scan
+        self.noise, self.losses, self.ghosts = as_rng(rng).spawn(3)
+        # Of the ghosts' stream, the first numbers say for each beam whether there is one, the rest where.
+        self.places = self.ghosts
+        if lidar.spurious > 0 and n_scans > size:
+            self.places = deepcopy(self.ghosts)
+            for start in range(0, n_scans, size):
+                self.places.random((min(size, n_scans - start), lidar.beams))
+
+    def disturb(self, ranges: Floats) -> None:
+        """Add the faults to exact ranges, in place; they are those of the next scans."""
+        lidar = self.lidar
+        if lidar.noise_std > 0:
+            noisy = ranges + self.noise.normal(0.0, lidar.noise_std, ranges.shape)
+            hit = np.isfinite(ranges)
+            ranges[hit] = np.clip(noisy[hit], lidar.range_min, lidar.range_max)
+        if lidar.dropout > 0:
+            ranges[self.losses.random(ranges.shape) < lidar.dropout] = np.inf
+        if lidar.spurious > 0:
+            ghost = self.ghosts.random(ranges.shape) < lidar.spurious
+            ranges[ghost] = self.places.uniform(lidar.range_min, lidar.range_max, int(ghost.sum()))

@@ -46,6 +46,7 @@ few = pk.Settings(grouping="kmeans", method="published", line_trials=300)
 results = {
     "random_world": [world, pk.random_world(5, style="free", rng=3)],
     "scan": scans,
+    "scan_blocks": list(pk.scan_blocks(world, scans.poses, noisy, size=30, rng=2)),
     "segment": pk.segment(points, rng=4),
     "kmeans": pk.kmeans(points, 3, rng=4),
     "count_by_silhouette": pk.count_by_silhouette(points, rng=4),

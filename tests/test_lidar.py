@@ -2,7 +2,8 @@
 
 GEOS: a beam is a line, a polygon is a ring, and shapely intersects them. A circle would only be a polygon to shapely,
 so it is asked for what is exact: how far the beam passes the centre, and where; Pythagoras closes the triangle.
-Brute force: a plain loop over poses, beams and sides.
+Brute force: a plain loop over poses, beams and sides. The library's own plain form, ``cast_plainly``, is held against
+the same.
 
 A beam on a knife's edge (through a corner, along a side, touching a circle) is decided by rounding: hit or miss, this
 side or that. There, the ray caster must agree with GEOS at the same bearing or at one moved by 1e-9 rad; or, where the
@@ -19,8 +20,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from primkit.lidar import Lidar, Scans, scan
-from primkit.raycast import CORNER_HIT, INDEX_FROM, PAIRS_PER_BLOCK, cast_rays
+from primkit import lidar as lidar_module
+from primkit.grid import Grid
+from primkit.lidar import Lidar, Scans, scan, scan_blocks
+from primkit.raycast import cast_plainly, cast_rays
+from primkit.raycast.fan import CORNER_HIT, Fan
+from primkit.raycast.fast import BEAMS_PER_BLOCK, PAIRS_PER_BLOCK
+from primkit.raycast.near import CELLS_FROM, Near
 from primkit.robot import inside_shape, teleport_poses
 from primkit.shapes import KINDS, Circle, Polygon
 from primkit.world import World, free_shape, random_world
@@ -315,6 +321,20 @@ def test_against_brute_force(scenes):
     assert checked > 2500
 
 
+def test_the_plain_form_sees_what_the_fast_form_sees(scenes):
+    hits = 0
+    for world, poses in scenes:
+        plain, fast = (cast(world, poses[:8], ANGLES[::9], 0.8) for cast in (cast_plainly, cast_rays))
+        assert same(plain, fast).all()
+        hits += np.isfinite(fast).sum()
+    assert hits > 800
+
+
+def test_the_plain_form_by_hand():
+    for shapes, pose, ranges in BY_HAND.values():
+        assert same(cast_plainly(World(shapes), [pose], QUARTERS)[0], ranges, 1e-12).all()
+
+
 def test_any_bearings_against_geos(scenes):
     """Angles need not be even, start at 0, be positive, or fill the turn."""
     rng = np.random.default_rng(21)
@@ -337,6 +357,45 @@ def test_any_number_of_beams(beams, scenes):
         scans = scan(world, poses[:8], lidar)
         assert scans.ranges.shape == (8, beams)
         check_against_geos(world, poses[:8], scans.angles, scans.ranges)
+
+
+@pytest.mark.parametrize("turns", [1, -1, 100_000])
+def test_a_heading_of_many_turns(turns, scenes):
+    for world, poses in scenes[::16]:
+        turned_on = poses + np.array([0, 0, 2 * math.pi * turns])
+        assert same(cast_rays(world, turned_on, ANGLES), cast_rays(world, poses, ANGLES)).all()
+
+
+def test_no_beam_slips_through_a_corner_after_many_turns():
+    """A heading of a million rad is known to 1e-10 rad only: both sides of the corner must round it alike."""
+    rng = np.random.default_rng(34)
+    for _ in range(100):
+        tip = free_shape("rectangle", rng.uniform(-0.3, 0.3, 2), rng)
+        corner = tip.vertices[0]
+        pose = np.array([*(corner + 0.5 * (corner - tip.centroid)), rng.uniform(-1e6, 1e6)])
+        angles = aimed_at([corner], pose) + np.linspace(-1e-9, 1e-9, 400)
+        assert np.isfinite(cast_rays(World([tip]), pose, angles)).all()
+
+
+FANS = {
+    "even": ANGLES,
+    "one beam": [0.3],
+    "uneven": np.sort(np.random.default_rng(1).uniform(-7, -1, 40)),
+    "two": [0, 3],
+}
+
+
+@pytest.mark.parametrize("angles", FANS.values(), ids=FANS)
+def test_beams_between_two_bearings(angles):
+    """Against the definition: some multiple of the turn brings the beam between the two."""
+    angles, rng = np.asarray(angles, dtype=float), np.random.default_rng(31)
+    first = rng.uniform(-30, 30, 300)
+    width = np.concatenate([rng.uniform(0, 6.2, 200), rng.uniform(0, 0.05, 80), np.zeros(10), rng.uniform(-3, 0, 10)])
+    interval, beam = Fan(angles).between(first, first + width)
+    expected = ((angles - first[:, None]) % (2 * math.pi) <= width[:, None]).nonzero()
+    assert sorted(zip(interval.tolist(), beam.tolist(), strict=True)) == list(
+        zip(*map(np.ndarray.tolist, expected), strict=True)
+    )
 
 
 # --- Knife's edges ------------------------------------------------------------------------------------------
@@ -648,7 +707,7 @@ def large_world():
     centers = np.vstack([grid, grid + 0.2])
     kinds = ["circle", "triangle", "rectangle", "pentagon"] * 72
     world = World([free_shape(k, c, rng) for k, c in zip(kinds, centers, strict=True)], 6.0)
-    assert sum(s.kind == "circle" for s in world.shapes) >= INDEX_FROM
+    assert sum(s.kind == "circle" for s in world.shapes) >= CELLS_FROM
     return world
 
 
@@ -674,18 +733,54 @@ def test_a_large_world_against_geos(large_world):
     np.testing.assert_array_equal(scan(large_world, poses).inside, inside)
 
 
+@pytest.mark.parametrize("reach", [0.01, 0.5, 3.0, 1e3])
+@pytest.mark.parametrize("n", [1, CELLS_FROM - 1, CELLS_FROM, 300])
+def test_what_is_near_against_all_distances(n, reach):
+    """Positions among the shapes, far outside, and exactly where the cells meet; shapes of very different sizes."""
+    rng = np.random.default_rng(32)
+    x, y, radii = rng.uniform(-3, 3, n), rng.uniform(-1, 1, n), rng.choice([1e-3, 0.1, 0.6], n)
+    near = Near(x, y, radii, reach)
+    assert (near.cells is None) == (n < CELLS_FROM)
+    places = rng.uniform(-5, 5, (400, 2))
+    if near.cells is not None:
+        corners = np.stack(np.meshgrid(np.arange(-2, near.cells.columns + 2), np.arange(-2, near.cells.rows + 2)), -1)
+        places = np.vstack(
+            [places, (near.cells.left, near.cells.low) + near.cells.edge * corners.reshape(-1, 2)[:3000]]
+        )
+    position, shape = near.pairs(places[:, 0], places[:, 1])
+    squares = (places[:, :1] - x) ** 2 + (places[:, 1:] - y) ** 2
+    expected = (squares <= (radii + reach) ** 2).nonzero()
+    assert sorted(zip(position.tolist(), shape.tolist(), strict=True)) == list(
+        zip(*map(np.ndarray.tolist, expected), strict=True)
+    )
+    assert (np.diff(position) >= 0).all()
+    assert np.bincount(position, minlength=1).max() <= near.most
+
+
+def test_cells_hold_few_shapes_and_are_few():
+    """A look-up costs the same on any board: cells know a few shapes each, and there are at most so many cells."""
+    rng = np.random.default_rng(33)
+    for n in (1000, 16_000):
+        side = math.sqrt(n) / 2  # 4 shapes on a square metre
+        near = Near(rng.uniform(0, side, n), rng.uniform(0, side, n), np.full(n, 0.1), 0.3)
+        assert near.cells.count.mean() < 5
+        assert near.cells.columns * near.cells.rows <= 17 * n
+    far_apart = Near(np.append(np.zeros(50), 1e6), np.append(np.arange(50.0), 1e6), np.full(51, 0.1), 0.3)
+    assert far_apart.cells.columns * far_apart.cells.rows <= 17 * 51
+
+
 @pytest.mark.parametrize("n_shapes", [1, 6])
 def test_many_poses_equal_one_by_one(n_shapes):
-    """5,000 poses make several blocks; the poses beside the borders of blocks are cast alone as well."""
+    """9,000 poses make several blocks; the poses beside the borders of blocks are cast alone as well."""
     world = random_world(n_shapes, style="free", gap=0.01, rng=1)
-    poses = random_poses(5000, np.random.default_rng(29))
+    poses = random_poses(9000, np.random.default_rng(29))
     ranges = cast_rays(world, poses, ANGLES)
-    block = PAIRS_PER_BLOCK // max(4, n_shapes)
+    block = min(PAIRS_PER_BLOCK // n_shapes, BEAMS_PER_BLOCK // len(ANGLES))
     assert block < len(poses) / 2
-    alone = [*range(0, 5000, 17), *(i for b in range(block, 5000, block) for i in (b - 1, b, b + 1)), 4999]
+    alone = [*range(0, 9000, 29), *(i for b in range(block, 9000, block) for i in (b - 1, b, b + 1)), 8999]
     for i in alone:
         np.testing.assert_array_equal(cast_rays(world, poses[i], ANGLES)[0], ranges[i])
-    parts = [cast_rays(world, poses[i : i + 700], ANGLES) for i in range(0, 5000, 700)]
+    parts = [cast_rays(world, poses[i : i + 700], ANGLES) for i in range(0, 9000, 700)]
     np.testing.assert_array_equal(np.vstack(parts), ranges)
     np.testing.assert_array_equal(scan(world, poses).inside, inside_shape(world, poses))
 
@@ -937,6 +1032,96 @@ def test_same_seed_same_bits(ring):
     first, second = scan(world, poses, lidar, rng=rng), scan(world, poses, lidar, rng=rng)
     assert first.ranges.tobytes() == one.ranges.tobytes()
     assert second.ranges.tobytes() != one.ranges.tobytes(), "a generator goes on: no scan repeats another's noise"
+
+
+# --- Scans: block by block ----------------------------------------------------------------------------------
+
+
+FAULTS = {
+    "none": {},
+    "noise": {"noise_std": 0.002},
+    "dropout": {"dropout": 0.2},
+    "spurious": {"spurious": 0.1},
+    "all": {"noise_std": 0.002, "dropout": 0.2, "spurious": 0.1},
+}
+
+
+@pytest.mark.parametrize("size", [1, 7, 1999, 2000, 10_000])
+@pytest.mark.parametrize("faults", FAULTS.values(), ids=FAULTS)
+def test_blocks_together_are_the_scans_to_the_last_bit(faults, size, ring):
+    world, poses, _ = ring
+    poses = poses[:20] if size == 1 else poses
+    whole = scan(world, poses, Lidar(**faults), rng=11)
+    blocks = list(scan_blocks(world, poses, Lidar(**faults), size=size, rng=11))
+    assert [len(block) for block in blocks] == [min(size, len(poses) - i) for i in range(0, len(poses), size)]
+    for name in ("poses", "ranges", "inside"):
+        together = np.concatenate([getattr(block, name) for block in blocks])
+        assert together.tobytes() == getattr(whole, name).tobytes()
+    assert all(np.array_equal(block.angles, whole.angles) for block in blocks)
+
+
+@pytest.mark.parametrize("bits", [np.random.MT19937, np.random.Philox, np.random.SFC64])
+def test_blocks_from_any_generator_which_goes_on_as_after_a_scan(bits, ring):
+    world, poses, _ = ring
+    lidar = Lidar(**FAULTS["all"])
+    one, other = (np.random.Generator(bits(12)) for _ in range(2))
+    for _ in range(2):
+        together = np.concatenate([block.ranges for block in scan_blocks(world, poses, lidar, size=300, rng=other)])
+        assert together.tobytes() == scan(world, poses, lidar, rng=one).ranges.tobytes()
+
+
+def test_a_generator_goes_on_in_the_same_way_without_faults(ring):
+    world, poses, _ = ring
+    one, other = np.random.default_rng(13), np.random.default_rng(13)
+    scan(world, poses, Lidar(), rng=one)
+    scan(world, poses, Lidar(noise_std=0.1), rng=other)
+    lidar = Lidar(noise_std=0.002)
+    assert scan(world, poses, lidar, rng=one).ranges.tobytes() == scan(world, poses, lidar, rng=other).ranges.tobytes()
+
+
+def test_blocks_fill_the_grid_as_the_scans_do(ring):
+    world, poses, exact = ring
+    whole, in_blocks = Grid(), Grid()
+    whole.add(exact)
+    for block in scan_blocks(world, poses, size=333):
+        in_blocks.add(block)
+    assert np.array_equal(whole.cells, in_blocks.cells)
+
+
+def test_a_block_is_computed_when_it_is_asked_for(monkeypatch, ring):
+    world, poses, _ = ring
+    cast, computed = lidar_module.cast, []
+    monkeypatch.setattr(
+        lidar_module, "cast", lambda world, some, *more: computed.append(len(some)) or cast(world, some, *more)
+    )
+    blocks = scan_blocks(world, poses, size=1500)
+    assert computed == []
+    next(blocks)
+    assert computed == [1500]
+    assert len(next(blocks)) == 500
+    assert next(blocks, None) is None
+
+
+def test_no_poses_are_one_empty_block():
+    (empty,) = scan_blocks(World(), [], Lidar(beams=7))
+    assert empty.ranges.shape == (0, 7)
+
+
+BLOCK_FAILURES = {
+    "no size": ({"size": 0}, "size must be a whole number >= 1, got 0"),
+    "half a scan": ({"size": 0.5}, "size must be a whole number >= 1, got 0.5"),
+    "poses": ({"poses": [(0, 0)]}, "poses must have shape (P, 3): x, y, heading; got shape (1, 2)"),
+    "world": ({"world": None}, "world must be a World, as in scan_blocks(world, poses), got NoneType"),
+    "lidar": ({"lidar": 3}, "lidar must be a Lidar, such as Lidar(), got int"),
+    "rng": ({"rng": -1}, "rng must be a whole number >= 0 or a numpy Generator, got -1"),
+}
+
+
+@pytest.mark.parametrize(("change", "sentence"), BLOCK_FAILURES.values(), ids=BLOCK_FAILURES)
+def test_scan_blocks_failure(change, sentence):
+    """At once: not when the first block is asked for."""
+    with pytest.raises(ValueError, match=exactly(sentence)):
+        scan_blocks(**{"world": World(), "poses": ORIGIN, **change})
 
 
 # --- Scans: the type ----------------------------------------------------------------------------------------

@@ -1,0 +1,27 @@
+"""Raycast: the exact distance along each beam to the first outline it meets.
+
+In:  a ``World``, poses, shape (P, 3): x [m], y [m], heading [rad], and the beams' bearings, shape (B,).
+Out: distances, shape (P, B), metres; infinity where a beam meets nothing.
+
+>>> import numpy as np
+>>> from primkit.shapes import Circle
+>>> from primkit.world import World
+>>> cast_rays(World([Circle((1, 0), 0.25)]), [(0, 0, 0)], [0.0, np.pi / 2]).tolist()
+[[0.75, inf]]
+
+The same twice. ``plain.py`` asks every beam about every side, as one would write it first: slow, easy to trust, and
+the oracle of the other. ``fast.py`` turns the question round and asks every side which beams it stops; the work
+grows with what is seen, and every hit is exact. The rooms, each of which imports only those before it:
+
+=============  ==============================================================
+``plain.py``   every beam about every side: the slow form
+``near.py``    which shapes are near enough to be seen from where
+``fan.py``     which beams lie between two bearings
+``fast.py``    every side about its beams: the fast form, with its derivation
+=============  ==============================================================
+"""
+
+from .fast import cast, cast_rays
+from .plain import cast_plainly
+
+__all__ = ["cast_rays", "cast_plainly", "cast"]

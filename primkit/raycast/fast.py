@@ -1,0 +1,225 @@
+"""Fast: every side about its beams.
+
+In:  a ``World``, poses, shape (P, 3): x [m], y [m], heading [rad], and the beams' bearings, shape (B,).
+Out: distances, shape (P, B), metres; infinity where a beam meets nothing.
+
+How it is fast. The plain way asks every beam of every pose about every side: P x B x S questions, and nearly all
+answers are no. Turn the question round: ask a side, once for each pose, which beams it stops. It answers with an
+interval of bearings, and only the beams in it are computed.
+
+A side, as seen by the robot R. Its line runs at the distance h; F is the point of the line right ahead of it::
+
+        left                         F          right
+      ----+-----------------+--------+------------+----     s grows to the left, s = 0 at F
+                             .       |
+                              t   phi|h
+                               .     |
+                                 .   |
+                                   . R
+
+    A point of the line at s is seen at the bearing phi = arctan(s / h), counted from F on, and is
+    t = sqrt(h^2 + s^2) away. So:
+    1. h and the s of both ends follow from a cross and a dot product. h > 0: the side faces the robot.
+       A robot that no side of a convex polygon faces is inside.
+    2. The part of the side in range ends at s = +-sqrt(range^2 - h^2) at the latest.
+    3. The bearings of the two ends of that part say which beams hit it: no other beam is looked at.
+    4. Each of these beams meets the line at s = h tan(phi). Along a side seen edge-on, h is 0 and tan(phi) infinite,
+       up to rounding: s is held between the ends.
+
+A circle with its centre at the distance d stops the beams between its two tangents, of the length sqrt(d^2 - r^2).
+When the tangents are out of range, those up to where the range ends: by the law of cosines for the triangle of
+robot, centre and the last point in sight.
+
+Last, a beam keeps the nearest of its hits.
+
+Legend: a pair is one pose with one shape near enough to be seen from it (``near.py``); phi is a beam's bearing from
+what is right ahead: F, or the circle's centre.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arguments import ROUNDING, as_poses, check_type
+from ..shapes import Circle, Polygon
+from ..world import World
+from .fan import TURN, Fan
+from .near import Near
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+Hits = tuple[Ints, Floats, Ints]  # where in the table of ranges, how far; and the poses that lie in a shape
+
+# Poses are cast in blocks of at most so many pairs and beams: some MB, small enough for the cache.
+PAIRS_PER_BLOCK, BEAMS_PER_BLOCK = 16_384, 400_000
+SIDES = 5  # of a polygon; fewer are filled up with sides without length, which face nobody
+
+
+def cast_rays(world: World, poses: ArrayLike, angles: ArrayLike, range_max: float = np.inf) -> Floats:
+    """Return the exact distance from each pose along each beam to the first outline.
+
+    Parameters
+    ----------
+    world : World
+        What stands on the board.
+    poses : array_like, shape (P, 3)
+        x [m], y [m], heading [rad], world frame.
+    angles : array_like, shape (B,)
+        Bearings from the heading in radians, increasing, within one turn.
+    range_max : float
+        Outlines farther off than this are not looked at, in metres.
+
+    Returns
+    -------
+    array, shape (P, B)
+        Metres; ``inf`` where a beam meets nothing, and everywhere from a pose inside a shape.
+
+    Raises
+    ------
+    ValueError
+        If poses are not (P, 3), angles do not increase within one turn, or range_max is not above zero.
+
+    Examples
+    --------
+    >>> cast_rays(World(), [(0, 0, 0)], [0.0]).tolist()
+    [[inf]]
+    """
+    check_type(world, World, "world must be a World, as in cast_rays(world, poses, angles)")
+    angles = np.asarray(angles, dtype=float)
+    steps = np.diff(angles) if angles.ndim == 1 and np.isfinite(angles).all() else np.array([-1.0])
+    if not ((steps > 0).all() and steps.sum() < TURN):
+        raise ValueError("angles must be finite and increase within one turn of 2 pi")
+    if not range_max > 0:
+        raise ValueError(f"range_max must be a number > 0, got {range_max:g}")
+    poses = as_poses(poses)
+    return cast(world, poses, angles, range_max)[0] if len(angles) else np.empty((len(poses), 0))
+
+
+def cast(
+    world: World, poses: Floats, angles: Floats, range_max: float = np.inf, range_min: float = 0.0
+) -> tuple[Floats, Bools]:
+    """Return the exact distances, shape (P, B), and which poses lie in a shape, shape (P,); at least one beam.
+
+    A beam whose nearest hit lies outside the limits, both included, reads ``inf``.
+    """
+    scene, fan = _scene(world, float(range_max) + ROUNDING), _fan(angles.tobytes())
+    ranges, inside = np.empty((len(poses), fan.size)), np.zeros(len(poses), dtype=bool)
+    step = max(1, min(PAIRS_PER_BLOCK // max(1, scene.near.most), BEAMS_PER_BLOCK // fan.size))
+    for start in range(0, len(poses), step):
+        block = slice(start, start + step)
+        for within in _cast_block(scene, fan, poses[block], ranges[block], (range_min, range_max)):
+            inside[start + within] = True
+    ranges[inside] = np.inf
+    return ranges, inside
+
+
+def _cast_block(scene: _Scene, fan: Fan, poses: Floats, ranges: Floats, limits: tuple[float, float]) -> list[Ints]:
+    """Fill in the ranges, shape (P, B), and return the poses that lie in a shape."""
+    x, y, heading = poses.T.copy()
+    heading -= TURN * np.floor(heading / TURN)  # many turns would cost digits
+    pose, shape = scene.near.pairs(x, y)
+    polygons, circles = (shape < scene.n_polygons).nonzero()[0], (shape >= scene.n_polygons).nonzero()[0]
+    nearest, hidden, inside = ranges.reshape(-1), [], []
+    nearest.fill(np.inf)
+    for pair, hits_on in ((polygons, _hits_on_sides), (circles, _hits_on_circles)):
+        if len(pair):
+            place, t, within = hits_on(scene, fan, (x, y, heading), pose.take(pair), shape.take(pair))
+            np.minimum.at(nearest, place, np.minimum(np.maximum(t, limits[0]), limits[1]))
+            hidden.append(place.compress(t < limits[0] - ROUNDING))  # what is too near hides what is behind it
+            inside.append(within)
+    for place in hidden:
+        nearest[place] = np.inf
+    return inside
+
+
+def _hits_on_sides(scene: _Scene, fan: Fan, here: tuple[Floats, ...], pose: Ints, polygon: Ints) -> Hits:
+    """Return all hits on K pairs' polygons; the steps are those of the module's derivation."""
+    x, y, heading = here
+    # 1. The sides that face the robot: their right ends, and the ways d to their left ends, shape (K, 5).
+    right_x = scene.right_x.take(polygon, axis=0) - x.take(pose)[:, None]
+    right_y = scene.right_y.take(polygon, axis=0) - y.take(pose)[:, None]
+    dx, dy = scene.way_x.take(polygon, axis=0), scene.way_y.take(polygon, axis=0)
+    cross, dot = right_x * dy - right_y * dx, right_x * dx + right_y * dy
+    facing = (cross > 0).ravel().nonzero()[0]
+    pair = facing // SIDES
+    within = pose.compress(np.bincount(pair, minlength=len(pose)) == 0)
+    side, pose = SIDES * polygon.take(pair) + (facing - SIDES * pair), pose.take(pair)
+    length = scene.length.take(side)
+    h, right = cross.take(facing) / length, dot.take(facing) / length
+
+    # 2. The part of each that is in range.
+    half = np.sqrt(np.maximum(scene.reach * scene.reach - h * h, 0.0))
+    left = np.where(h <= scene.reach, np.minimum(right + length, half), -np.inf)
+    right = np.maximum(right, -half)
+
+    # 3. The beams that hit it.
+    ahead = scene.inward.take(side) - heading.take(pose)
+    hit, beam = fan.between(ahead + np.arctan2(right, h), ahead + np.arctan2(left, h))
+
+    # 4. Where, and how far that is.
+    phi, h = fan.angles.take(beam) - ahead.take(hit), h.take(hit)
+    s = np.minimum(np.maximum(h * np.tan(phi), right.take(hit)), left.take(hit))
+    return (fan.size * pose).take(hit) + beam, np.sqrt(h * h + s * s), within
+
+
+def _hits_on_circles(scene: _Scene, fan: Fan, here: tuple[Floats, ...], pose: Ints, shape: Ints) -> Hits:
+    """Return all hits on K pairs' circles."""
+    x, y, heading = here
+    cx, cy, r = (v.take(shape - scene.n_polygons) for v in (scene.center_x, scene.center_y, scene.radii))
+    cx, cy = cx - x.take(pose), cy - y.take(pose)
+    d = np.sqrt(cx * cx + cy * cy)
+    within, outside = pose.compress(d <= r), (d > r).nonzero()[0]
+    pose, cx, cy, r, d = (v.take(outside) for v in (pose, cx, cy, r, d))
+
+    # 1. The beams between the two tangents, as far as they are in range.
+    power = (d - r) * (d + r)  # the tangents' length, squared
+    sight = np.minimum(np.sqrt(power), scene.reach)
+    half = np.arccos(np.minimum((power + sight * sight) / (2 * d * sight), 1.0))
+    ahead = np.arctan2(cy, cx) - heading.take(pose)
+    hit, beam = fan.between(ahead - half, ahead + half)
+
+    # 2. |t u - c| = r, solved for the nearer t: d cos(phi) less half a chord. Written as a quotient, it loses no digits
+    #    when the two are close.
+    phi, d, r = fan.angles.take(beam) - ahead.take(hit), d.take(hit), r.take(hit)
+    aside = d * np.sin(phi)
+    t = power.take(hit) / (d * np.cos(phi) + np.sqrt(np.maximum(r * r - aside * aside, 0.0)))
+    return (fan.size * pose).take(hit) + beam, t, within
+
+
+class _Scene:
+    """A world as arrays: its polygons' sides, its circles, and which of them are near."""
+
+    def __init__(self, world: World, reach: float) -> None:
+        polygons = [s for s in world.shapes if isinstance(s, Polygon)]
+        circles = [s for s in world.shapes if isinstance(s, Circle)]
+        self.reach, self.n_polygons = reach, len(polygons)
+        # Corners are counter-clockwise: from outside, each side goes from its left end to its right end.
+        left = np.array([np.pad(p.vertices, ((0, SIDES - len(p.vertices)), (0, 0)), "edge") for p in polygons])
+        left = left.reshape(-1, SIDES, 2)
+        right = np.roll(left, -1, axis=1)
+        self.right_x, self.right_y = np.ascontiguousarray(right[..., 0]), np.ascontiguousarray(right[..., 1])
+        self.way_x, self.way_y = left[..., 0] - self.right_x, left[..., 1] - self.right_y
+        self.length = np.sqrt(self.way_x**2 + self.way_y**2)
+        self.inward = np.arctan2(-self.way_x, self.way_y)  # the bearing of F from any robot that the side faces
+        self.radii = np.array([c.radius for c in circles])
+        self.center_x, self.center_y = np.array([c.center for c in circles]).reshape(-1, 2).T.copy()
+        middle = (left.min(axis=1) + left.max(axis=1)) / 2
+        around = np.linalg.norm(left - middle[:, None], axis=2).max(axis=1, initial=0.0)
+        x, y = np.append(middle[:, 0], self.center_x), np.append(middle[:, 1], self.center_y)
+        self.near = Near(x, y, np.append(around, self.radii), reach)
+
+
+@lru_cache(maxsize=16)
+def _scene(world: World, reach: float) -> _Scene:
+    """Return the world's arrays; kept, because a driving robot asks for them ten times a second."""
+    return _Scene(world, reach)
+
+
+@lru_cache(maxsize=16)
+def _fan(angles: bytes) -> Fan:
+    """Return the fan of beams with these angles; kept for the same reason."""
+    return Fan(np.frombuffer(angles))
