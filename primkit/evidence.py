@@ -106,14 +106,16 @@ def judged(points: Floats, figure: Circle | Outlines, spread: float, *, square: 
     if isinstance(figure, Circle):
         shape: Shape = figure
         lengths, fitted = np.array([figure.perimeter]), OF_CIRCLE
-        on_it, log_likelihood = _along_smooth(figure.signed_distance(points), spread)
+        distance = figure.signed_distance(points)
+        on_it, log_likelihood = _along_smooth(distance, spread)
     else:
         shape = polygon = figure.polygon()
         lengths, k = polygon.sides, len(polygon.sides)
         fitted = OF_SQUARE if square else np.tile(OF_SIDE * k, k)  # a side has a kth of the points
+        distance = figure.distances(points)[0].max(axis=1)
         share, _, each = shares(points, figure, spread)
         on_it, log_likelihood = float(share.sum()), float(each[0])
-    seen = seen_shares(shape, points[np.abs(shape.signed_distance(points)) <= SIGMAS * spread])
+    seen = seen_shares(shape, points[np.abs(distance) <= SIGMAS * spread])
     length = float(lengths @ np.array(seen))
     cost = _cost(log_likelihood, fitted, len(points), spread) + _length_cost(on_it, length)
     cost += UNSEEN_COST * float(lengths.sum() - length)

@@ -12,6 +12,7 @@ Out: ``Candidate`` explanations, the best first.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -20,8 +21,8 @@ from numpy.typing import NDArray
 from .arguments import as_rng
 from .circles import find_circle, fit_circle
 from .evidence import GAP, Candidate, judged, judged_wall
-from .guess import guess_outlines, guess_rectangles, line_guesses, one_side_more
-from .lines import find_lines
+from .guess import guess_outlines, guess_rectangles, line_guesses, one_side_more, ransac_lines
+from .lines import Line
 from .outlines import Outlines, joined
 from .refine import refine_hard, refine_soft, truncated_cost
 from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
@@ -34,7 +35,7 @@ MOST_RADIUS = 0.25  # m: a larger circle than a quarter of the board is a wall
 LEAST_ARC = np.radians(60)  # a shorter arc fits a wide range of circles
 CIRCLE_TRIALS = 100  # with four fifths of the points on the circle, one sample in two is clean
 CIRCLE_ROUNDS = 4  # after two, hardly a point changes its weight
-WALL_TRIALS = 100  # a wall has nearly all points on it, or it is none
+ENOUGH_POINTS = 200  # more do not make a first fit much better, and cost time
 STARTS_KEPT = 5  # of the guesses, those closest to the points are refined
 WIDER = 0.005  # m: guesses are judged with a longer reach than fits, because they still lie beside the points
 # m: beyond this spread a short side drowns in its neighbours' points when each is given to one side alone
@@ -78,27 +79,36 @@ def candidates(
 
 
 def _rough(points: Floats, spread: float, rng: np.random.Generator) -> list[Candidate]:
-    """Return the explanations that RANSAC and a few rounds of giving points back lead to, in any order."""
-    circle_rng, line_rng, wall_rng = rng.spawn(3)
-    reach = SIGMAS * spread
-    found = _walls(points, spread, wall_rng)
-    circle = find_circle(points, reach, trials=CIRCLE_TRIALS, rng=circle_rng)
+    """Return the explanations that RANSAC and a few rounds of giving points back lead to, in any order.
+
+    The fits are made on some of the points, where there are many; all of them judge.
+    """
+    some_rng, circle_rng, line_rng = rng.spawn(3)
+    some, reach = points[some_rng.permutation(len(points))[:ENOUGH_POINTS]], SIGMAS * spread
+    circle = find_circle(some, reach, trials=CIRCLE_TRIALS, rng=circle_rng)
+    lines = ransac_lines(some, reach, rng=line_rng)
+    found = [judged_wall(points, line, _length_along(points, line, reach), spread) for line in lines[:1]]
     if circle is not None and circle.radius <= MOST_RADIUS:
         found.append(judged(points, circle, spread))
-    sides = line_guesses(points, reach, rng=line_rng)
+    return found + [judged(points, o, spread, square=square) for o, square in _polygons(some, lines, spread)]
+
+
+def _polygons(points: Floats, lines: list[Line], spread: float) -> Iterator[tuple[Outlines, bool]]:
+    """Yield the best outline of three, four and five sides, and the best with right angles, with whether it is that."""
+    reach = SIGMAS * spread
+    sides = line_guesses(points, lines, reach)
     fewer: Outlines | None = None  # the best with a side less
     for k in (3, 4, 5):
         guess = guess_outlines(points, sides, k, reach)
         if fewer is not None:
             guess = joined(guess, one_side_more(points, fewer))
-        fewer = _refined(points, guess, spread, square=False)
-        if fewer is not None:
-            found.append(judged(points, fewer, spread))
         if k == 4:
             upright = _refined(points, guess_rectangles(points, sides, guess), spread, square=True)
             if upright is not None:
-                found.append(judged(points, upright, spread, square=True))
-    return found
+                yield upright, True
+        fewer = _refined(points, guess, spread, square=False)
+        if fewer is not None:
+            yield fewer, False
 
 
 def _refined(points: Floats, guess: Outlines, spread: float, *, square: bool) -> Outlines | None:
@@ -116,23 +126,25 @@ def _refined(points: Floats, guess: Outlines, spread: float, *, square: bool) ->
     return refine_soft(points, sound[:1], spread, square=square)
 
 
-def _walls(points: Floats, spread: float, rng: np.random.Generator) -> list[Candidate]:
-    """Explain the points by one straight wall: its line and its two ends."""
-    return [
-        judged_wall(points, best.line, float(np.ptp(points[best.inliers] @ best.line.direction)), spread)
-        for best in find_lines(points, SIGMAS * spread, most=1, trials=WALL_TRIALS, rng=rng)
-    ]
-
-
 def _polished(points: Floats, rough: Candidate, spread: float, soft: bool) -> Candidate | None:
     """Fit a candidate to the last digit; None for a circle that is none."""
     figure = rough.figure
     if isinstance(figure, Circle):
         circle = _polished_circle(points, figure, spread)
         return None if circle is None else _unless_short(judged(points, circle, spread), circle)
-    if figure is None or not soft:
+    if figure is None:
         return rough
-    return judged(points, refine_soft(points, figure, spread, square=rough.square), spread, square=rough.square)
+    if soft:
+        refined = refine_soft(points, figure, spread, square=rough.square)
+    else:
+        refined = refine_hard(points, figure, SIGMAS * spread, square=rough.square)
+    return judged(points, refined, spread, square=rough.square) if refined.sound()[0] else rough
+
+
+def _length_along(points: Floats, line: Line, reach: float) -> float:
+    """Return over what length a line's points lie, metres."""
+    near = points[np.abs(line.signed_distance(points)) <= reach]
+    return float(np.ptp(near @ line.direction)) if len(near) else 0.0
 
 
 def _unless_short(candidate: Candidate, circle: Circle) -> Candidate | None:

@@ -5,7 +5,8 @@ Out: ``Outlines`` with k sides each.
 
 >>> from primkit.shapes import Polygon
 >>> ring = Polygon([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)]).outline(80)
->>> guess_outlines(ring, line_guesses(ring, 0.003, rng=0), 4, 0.003).polygon().kind
+>>> lines = ransac_lines(ring, 0.003, rng=0)
+>>> guess_outlines(ring, line_guesses(ring, lines, 0.003), 4, 0.003).polygon().kind
 'rectangle'
 
 Two sources, because each fails where the other works: sets of the lines that RANSAC found, and even sectors
@@ -55,14 +56,15 @@ def guess_outlines(points: Floats, sides: Outlines, k: int, reach: float) -> Out
     return joined(_best_subsets(points, sides, k, reach), _sectors(points, k))
 
 
-def line_guesses(points: Floats, reach: float, *, rng: int | np.random.Generator | None = None) -> Outlines:
-    """Return lines that may be sides, as one outline of M sides: RANSAC's, and the hull's over unseen stretches."""
-    lines = [
-        found.line
-        for found in find_lines(points, reach, left_over=0.0, most=LINES_TRIED, trials=LINE_TRIALS, rng=rng)
-        if np.count_nonzero(found.inliers) >= 3
-    ]
-    lines += _closing_lines(points, reach)
+def ransac_lines(points: Floats, reach: float, *, rng: int | np.random.Generator | None = None) -> list[Line]:
+    """Return lines that RANSAC finds in the points, the one with most points first; empty for fewer than three."""
+    found = find_lines(points, reach, left_over=0.0, most=LINES_TRIED, trials=LINE_TRIALS, rng=rng)
+    return [one.line for one in found if np.count_nonzero(one.inliers) >= 3]
+
+
+def line_guesses(points: Floats, lines: list[Line], reach: float) -> Outlines:
+    """Return lines that may be sides, as one outline of M sides: those given, and the hull's over unseen stretches."""
+    lines = lines + _closing_lines(points, reach)
     outward = [line.turned_round() if line.offset < 0 else line for line in lines]  # the origin is inside
     return from_angle_order(np.array([[line.angle for line in outward]]), np.array([[line.offset for line in outward]]))
 
