@@ -25,7 +25,7 @@ __version__ = "0.1.0"
 _STORY = {
     "shapes": ("Circle", "Polygon"),
     "world": ("World", "random_world"),
-    "robot": ("teleport_poses", "skipped_waypoints"),
+    "robot": ("teleport_poses", "skipped_waypoints", "drive"),
     "raycast": ("cast_rays",),
     "lidar": ("Lidar", "Scans", "scan", "scan_blocks"),
     "grid": ("Grid",),
@@ -76,7 +76,7 @@ if TYPE_CHECKING:
     from .plots import plot_clusters, plot_found, plot_points, plot_scan, plot_story, plot_world, save_figure
     from .ransac import run_ransac, trials_needed
     from .raycast import cast_rays
-    from .robot import skipped_waypoints, teleport_poses
+    from .robot import drive, skipped_waypoints, teleport_poses
     from .segmentation import count_by_silhouette, kmeans, link, segment
     from .shapes import Circle, Polygon
     from .steps import Steps

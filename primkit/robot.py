@@ -1,14 +1,21 @@
 """Robot: where the e-puck stands when it scans.
 
-Third step of the story: automatic movement. The robot is set down on way-points that cover the board and
-scans once at each; a way-point inside a shape is skipped.
+Third step of the story. Automatic movement: the robot is set down on way-points that cover the board and scans once
+at each; a way-point inside a shape is skipped. Manual movement: its two wheels turn as the user says, and it stops
+where it would touch something.
 
-In:  a ``World``.
+In:  a ``World``, and for a drive the speeds of the wheels.
 Out: poses, shape (P, 3): x [m], y [m], heading [rad, counter-clockwise from the x axis], world frame.
 
 >>> from primkit.world import World
 >>> teleport_poses(World()).shape
 (77, 3)
+>>> drive(World(), [(6.28, 6.28)] * 10)[-1].round(4).tolist()  # both wheels at full speed, for a second
+[0.1287, 0.0, 0.0]
+
+Two wheels at speeds l and r [rad/s], of radius R, at a distance A from each other, make the robot move at
+v = R (l + r) / 2 and turn at w = R (r - l) / A. While they are held, it goes along an arc: in the time t it turns by
+w t, and comes v t sin(w t / 2) / (w t / 2) far, in the direction midway between the old heading and the new one.
 
 Source: the paper's section 3.2, "Robot Movement", with the numbers of its published code.
 """
@@ -16,14 +23,23 @@ Source: the paper's section 3.2, "Robot Movement", with the numbers of its publi
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from .arguments import as_positive, check_type
+from .arguments import as_points, as_poses, as_positive, check_type, short
 from .world import World
 
 STEP_X = 0.15  # m between way-points along x
 STEP_Y = 0.10  # m between way-points along y
 STOP_X = 0.10  # the last column stands this far [m] inside the board's right edge
+
+WHEEL = 0.0205  # m: radius of a wheel
+AXLE = 0.052  # m from wheel to wheel
+FASTEST = 6.28  # rad/s: a wheel's greatest speed
+BODY = 0.037  # m: radius of the body, a disc around the middle of the axle
+PERIOD = 0.1  # s: wheels keep their speeds from one scan to the next
+# m: the way is looked at in steps of this length, and the body keeps this far from everything: between two clear places
+# that lie so close together nothing can be touched.
+CLEAR = 0.0001
 
 
 def waypoints(size: float = 1.0) -> NDArray[np.float64]:
@@ -74,3 +90,168 @@ def skipped_waypoints(world: World) -> NDArray[np.float64]:
     check_type(world, World, "world must be a World")
     poses = waypoints(world.size)
     return poses[inside_shape(world, poses)]
+
+
+def moved(poses: ArrayLike, wheels: ArrayLike, time: float | NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return where robots are after their wheels have turned for a while, with nothing in the way, shape as ``poses``.
+
+    Parameters
+    ----------
+    poses : array_like, shape (..., 3)
+        x [m], y [m], heading [rad].
+    wheels : array_like, shape (..., 2)
+        Speeds of the left and the right wheel, radians per second.
+    time : float or array_like, shape (...)
+        Seconds.
+
+    Examples
+    --------
+    Wheels at equal and opposite speeds turn it on the spot:
+
+    >>> moved((0, 0, 0), (-1, 1), 2.0).round(4).tolist()
+    [0.0, 0.0, 1.5769]
+    """
+    pose, (left, right) = np.asarray(poses, dtype=float), np.moveaxis(np.asarray(wheels, dtype=float), -1, 0)
+    turn = WHEEL * (right - left) / AXLE * time
+    way = WHEEL * (right + left) / 2 * time * np.sinc(turn / (2 * np.pi))  # numpy's sinc(x) is sin(pi x) / (pi x)
+    bearing = pose[..., 2] + turn / 2
+    step = np.stack(np.broadcast_arrays(way * np.cos(bearing), way * np.sin(bearing), turn), axis=-1)
+    return pose + step
+
+
+def clearance(world: World, places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return how far the robot's body is from the nearest shape or edge of the board, shape (N,), metres.
+
+    Parameters
+    ----------
+    world : World
+        What stands on the board.
+    places : array, shape (N, 2)
+        The robot's x and y, metres.
+
+    Returns
+    -------
+    array, shape (N,)
+        Below zero where the body would be in a shape or beyond the edge.
+    """
+    free: NDArray[np.float64] = world.size / 2 - np.abs(places).max(axis=1)
+    for shape in world.shapes:
+        free = np.minimum(free, shape.signed_distance(places))
+    return free - BODY
+
+
+def advance(world: World, pose: ArrayLike, wheels: ArrayLike, time: float = PERIOD) -> tuple[NDArray[np.float64], bool]:
+    """Return the robot's pose after its wheels have turned for a while, and whether something stopped it.
+
+    It stops where its body would touch a shape or leave the board, at most a fifth of a millimetre before; its wheels
+    then slip, and it only turns.
+
+    Parameters
+    ----------
+    world : World
+        What stands on the board.
+    pose : array_like, shape (3,)
+        x [m], y [m], heading [rad]; the body must be clear of everything.
+    wheels : array_like, shape (2,)
+        Speeds of the left and the right wheel, radians per second, at most ``FASTEST`` either way.
+    time : float
+        Seconds.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or the body is not clear to begin with.
+
+    Examples
+    --------
+    >>> from primkit.shapes import Circle
+    >>> pose, stopped = advance(World([Circle((0.1, 0.0), 0.05)]), (0, 0, 0), (6.28, 6.28), time=1.0)
+    >>> round(float(pose[0]), 3), stopped
+    (0.013, True)
+    """
+    check_type(world, World, "world must be a World")
+    here, speeds = _as_pose(pose), _as_wheels([wheels])[0]
+    seconds = as_positive(time, "time", zero=True)
+    way = WHEEL * float(np.abs(speeds.sum())) / 2 * seconds
+    times = np.linspace(0, seconds, 2 + int(way / CLEAR))
+    poses = moved(here, speeds, times)
+    free = clearance(world, poses[:, :2]) - CLEAR
+    if free[0] < -CLEAR:
+        x, y = here[:2]
+        raise ValueError(f"the robot must stand clear of shapes and on the board, got ({x:g}, {y:g}) m")
+    blocked = np.flatnonzero((free[1:] < 0) & (free[1:] < free[:-1]))  # who stands too close may drive away
+    if way == 0 or len(blocked) == 0:
+        return poses[-1], False
+    return np.array([*poses[blocked[0], :2], poses[-1, 2]]), True
+
+
+def drive(
+    world: World, wheels: ArrayLike, start: ArrayLike | None = None, *, period: float = PERIOD
+) -> NDArray[np.float64]:
+    """Return the poses of a drive, shape (T + 1, 3): the start, and one after each pair of wheel speeds.
+
+    Parameters
+    ----------
+    world : World
+        What stands on the board.
+    wheels : array_like, shape (T, 2)
+        Speeds of the left and the right wheel, radians per second, at most 6.28 either way; each pair is
+        held for a period.
+    start : array_like, shape (3,), optional
+        x [m], y [m], heading [rad]; the free place nearest to the board's centre when not given.
+    period : float
+        Seconds between two scans.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or the body is not clear at the start.
+
+    Examples
+    --------
+    >>> drive(World(), [(3, 6), (6, 3)], start=(0.1, 0.2, 0)).round(4).tolist()
+    [[0.1, 0.2, 0.0], [0.1092, 0.2005, 0.1183], [0.1184, 0.2011, 0.0]]
+    """
+    check_type(world, World, "world must be a World")
+    poses = [start_pose(world) if start is None else _as_pose(start)]
+    for speeds in _as_wheels(wheels):
+        poses.append(advance(world, poses[-1], speeds, period)[0])
+    return np.array(poses)
+
+
+def start_pose(world: World) -> NDArray[np.float64]:
+    """Return the free place nearest to the board's centre, on a grid of a centimetre, heading 0, shape (3,).
+
+    Raises
+    ------
+    ValueError
+        If the body has no room anywhere.
+
+    Examples
+    --------
+    >>> start_pose(World()).tolist()
+    [0.0, 0.0, 0.0]
+    """
+    lines = np.arange(-np.floor(50 * world.size), np.floor(50 * world.size) + 1) / 100
+    places = np.stack(np.meshgrid(lines, lines, indexing="ij"), axis=-1).reshape(-1, 2)
+    places = places[clearance(world, places) >= CLEAR]
+    if len(places) == 0:
+        raise ValueError("the board must have room for the robot, got none between its shapes")
+    nearest = np.lexsort((places[:, 1], places[:, 0], np.hypot(*places.T).round(9)))[0]
+    return np.array([*places[nearest], 0.0])
+
+
+def _as_pose(pose: ArrayLike) -> NDArray[np.float64]:
+    """Return one pose, shape (3,), or say in one sentence what is wrong."""
+    poses = as_poses(pose)
+    if len(poses) != 1:
+        raise ValueError(f"a pose must be three finite numbers (x, y, heading), got {short(pose)}")
+    return poses[0]
+
+
+def _as_wheels(wheels: ArrayLike) -> NDArray[np.float64]:
+    """Return wheel speeds, shape (T, 2), or say in one sentence what is wrong."""
+    speeds = as_points(wheels, "wheels")
+    if np.abs(speeds).max(initial=0.0) > FASTEST:
+        raise ValueError(f"wheels must turn at {FASTEST:g} rad/s at most, got {np.abs(speeds).max():g}")
+    return speeds
