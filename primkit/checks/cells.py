@@ -1,0 +1,217 @@
+"""Cells: from metres to a cell, and from a scan to the set of occupied cells; the checks of lesson 02.
+
+In:  the student's ``to_cells(points, resolution)`` and ``occupy(cells, pose, angles, ranges, resolution)``.
+Out: answers. The first returns whole numbers, shape (N, 2); the second the set of occupied cells, pairs (i, j).
+
+>>> to_cells(lambda points, resolution: ...)
+○ not attempted: to_cells still returns `...`.
+>>> sorted(occupy.reference({(0, 0)}, np.array([0.0, 0.0, 0.0]), np.zeros(1), np.array([0.25]), 0.1))
+[(0, 0), (2, 0)]
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..grid import Grid
+from .answer import Case, Check, Fault
+from .judges import array, shown
+
+Floats = NDArray[np.float64]
+Cells = set[tuple[int, int]]
+
+RANDOM_CASES = 200
+EDGE = 1e-6  # cells: points so near a border that rounding alone decides are left out
+FAR = 1 << 40  # cells: farther out than anything that was seen
+TURN = 2 * np.pi
+
+
+# --- metres to cells ---------------------------------------------------------------------------------------
+
+
+def cells_of(points: Floats, resolution: float) -> NDArray[np.int64]:
+    """Return the cell of each point, shape (N, 2): half-open cells of ``resolution`` metres, (0, 0) from the origin."""
+    return Grid(resolution).to_cells(points)
+
+
+def _point_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+    """Yield points on all sides of the origin, on borders that floats hold exactly, then random ones."""
+    yield np.array([[0.025, 0.018]]), 0.01
+    yield np.array([[-0.025, 0.018], [-0.004, -0.004]]), 0.01
+    yield np.array([[0.5, 0.25], [-0.25, 0.0]]), 0.25  # on borders: half-open
+    n = 0
+    while n < RANDOM_CASES:
+        resolution = float(rng.choice([0.001, 0.005, 0.02, 0.1, 0.3]))
+        points = rng.uniform(-0.5, 0.5, (int(rng.integers(1, 6)), 2))
+        if _clear(points, resolution):
+            n += 1
+            yield points, resolution
+
+
+def _clear(points: Floats, resolution: float) -> bool:
+    """Tell whether no point is so near a border that rounding decides."""
+    place = points / resolution
+    return bool((np.abs(place - np.round(place)) > EDGE).all())
+
+
+def _by(change: Any) -> Any:
+    """Return a wrong way to cells that works on points / resolution."""
+    return lambda points, resolution: change(points / resolution)
+
+
+to_cells = Check(
+    "to_cells",
+    cells_of,
+    _point_cases,
+    array(),
+    (
+        Fault("Below zero the cells are one too high: int() cuts towards zero, floor goes down.", like=_by(np.trunc)),
+        Fault("That is the nearest border, not the cell that the point lies in.", like=_by(np.round)),
+        Fault("Everything is one too high: cell 0 begins at 0.", like=_by(lambda place: np.floor(place) + 1)),
+        Fault(
+            "Only points exactly on a border are wrong: a cell holds its lower border, and not its upper one.",
+            like=_by(lambda place: np.ceil(place) - 1),
+        ),
+        Fault("Those are places counted in cells: which whole number names the cell?", like=_by(lambda place: place)),
+        Fault(
+            "That is the cell's corner in metres: the number of the cell is asked for.",
+            like=lambda points, resolution: np.floor(points / resolution) * resolution,
+        ),
+        Fault(
+            "That is the cell's centre in metres: the number of the cell is asked for.",
+            like=lambda points, resolution: (np.floor(points / resolution) + 0.5) * resolution,
+        ),
+        Fault("x and y have changed places: i counts along x.", like=_by(lambda place: np.floor(place)[:, ::-1])),
+        Fault(
+            "How many cells fit into that many metres? Divide by their size.",
+            like=lambda points, resolution: np.floor(points * resolution),
+        ),
+    ),
+)
+
+
+# --- a scan into the set -----------------------------------------------------------------------------------
+
+
+def with_scan(cells: Cells, pose: Floats, angles: Floats, ranges: Floats, resolution: float) -> Cells:
+    """Return the occupied cells with those that a scan's hits fall into; a range of inf is no hit."""
+    return cells | _as_set(cells_of(_hits(pose, angles, ranges), resolution))
+
+
+def _hits(pose: Floats, angles: Floats, ranges: Floats) -> Floats:
+    """Return where the beams hit, shape (H, 2), metres."""
+    hit = np.isfinite(ranges)
+    bearing = pose[2] + angles[hit]
+    return pose[:2] + ranges[hit, None] * np.column_stack([np.cos(bearing), np.sin(bearing)])
+
+
+def _as_set(cells: NDArray[np.int64]) -> Cells:
+    return {(i, j) for i, j in cells.tolist()}
+
+
+def _scan_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+    """Yield one hit, a turned robot, a scan without hits, two hits in one cell, then random scans."""
+    yield set(), np.array([0.005, 0.005, 0.0]), np.array([0.0]), np.array([0.1]), 0.01
+    yield {(3, 3)}, np.array([0.105, 0.005, np.pi / 2]), np.array([0.0]), np.array([0.2]), 0.01
+    yield {(3, 3)}, np.array([0.005, 0.005, 0.0]), np.array([0.0, 0.5]), np.array([np.inf, np.inf]), 0.01
+    yield set(), np.array([-0.1, -0.1, 0.3]), np.array([0.0, 0.01, 3.0]), np.array([0.22, 0.22, np.inf]), 0.1
+    n = 0
+    while n < RANDOM_CASES:
+        pose = np.array([*rng.uniform(-0.5, 0.5, 2), rng.uniform(0, TURN)])
+        angles = TURN * np.arange(int(rng.integers(4, 13))) / 12
+        ranges = np.where(rng.random(len(angles)) < 0.3, np.inf, rng.uniform(0.05, 0.3, len(angles)))
+        resolution = float(rng.choice([0.005, 0.02, 0.1]))
+        hits = _hits(pose, angles, ranges)
+        if _clear(hits, resolution):
+            n += 1
+            seen = _as_set(cells_of(hits, resolution))
+            yield (
+                {(int(i), int(j)) for i, j in rng.integers(-9, 9, (3, 2))} | set(list(seen)[:1]),
+                *(
+                    pose,
+                    angles,
+                    ranges,
+                    resolution,
+                ),
+            )
+
+
+def _judge_cells(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None:
+    """Judge a set of pairs."""
+    if not isinstance(got, (set, frozenset)):
+        return f"got {shown(got)}, expected a set of pairs (i, j){' (is there a return?)' if got is None else ''}"
+    if got == expected:
+        return None
+    missing, extra = (sorted(map(shown, some)) for some in (expected - got, got - expected))
+    found = f"got {len(got)} cells, expected {len(expected)}"
+    return f"{found}; {f'{missing[0]} is missing' if missing else f'{extra[0]} should not be there'}"
+
+
+def _scan_with(hits: Any) -> Any:
+    """Return the update with another way from ranges to hits."""
+
+    def update(cells: Cells, pose: Floats, angles: Floats, ranges: Floats, resolution: float) -> Cells:
+        hit = np.isfinite(ranges)
+        return cells | _as_set(cells_of(hits(pose, angles[hit], ranges[hit]), resolution))
+
+    return update
+
+
+def _around(place: Floats, bearing: Floats, ranges: Floats) -> Floats:
+    return place + ranges[:, None] * np.column_stack([np.cos(bearing), np.sin(bearing)])
+
+
+def _only_new(_cells: Cells, pose: Floats, angles: Floats, ranges: Floats, resolution: float) -> Cells:
+    return with_scan(set(), pose, angles, ranges, resolution)
+
+
+def _cut(cells: Cells, pose: Floats, angles: Floats, ranges: Floats, resolution: float) -> Cells:
+    return cells | _as_set(np.trunc(_hits(pose, angles, ranges) / resolution).astype(int))
+
+
+def _misses_kept(cells: list[Case]) -> bool:
+    """Tell whether the only cells too many are those of beams that met nothing, infinitely far out."""
+    wrong = [case for case in cells if case.off]
+    return all(
+        isinstance(case.got, set) and case.expected <= case.got and all(map(_no_place, case.got - case.expected))
+        for case in wrong
+    )
+
+
+def _no_place(cell: Any) -> bool:
+    """Tell whether a cell is what becomes of infinity: a huge number, or none."""
+    values = np.asarray(cell)
+    return values.dtype.kind in "iuf" and bool((~(np.abs(values.astype(float)) < FAR)).any())
+
+
+occupy = Check(
+    "occupy",
+    with_scan,
+    _scan_cases,
+    _judge_cells,
+    (
+        Fault("A beam that met nothing reads inf and occupies no cell: leave it out first.", when=_misses_kept),
+        Fault("Where are the cells of the scans before? A map keeps what it knows.", like=_only_new),
+        Fault(
+            "A turned robot goes wrong: angles count from its heading, pose[2].",
+            like=_scan_with(lambda pose, angles, ranges: _around(pose[:2], angles, ranges)),
+        ),
+        Fault(
+            "Those are places seen from the robot: add where it stands.",
+            like=_scan_with(lambda pose, angles, ranges: _around(np.zeros(2), pose[2] + angles, ranges)),
+        ),
+        Fault(
+            "x and y have changed places: x goes with the cosine.",
+            like=_scan_with(lambda pose, angles, ranges: _around(pose[:2], np.pi / 2 - pose[2] - angles, ranges)),
+        ),
+        Fault("Cells below zero are wrong: int() cuts towards zero.", like=_cut),
+        Fault(
+            "A list keeps the same cell many times; a set keeps it once.",
+            when=lambda cases: all(isinstance(case.got, list) for case in cases),
+        ),
+    ),
+)
