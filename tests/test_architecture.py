@@ -36,7 +36,7 @@ ORDER = (
         "pipeline",
         "evaluation",
     ),
-    *("formats", "study", "plots", "bench", "widgets", "checks", "__init__", "__main__"),
+    *("formats", "study", "plots", "bench", "widgets", "checks", "__init__", "commands", "__main__"),
 )
 
 # Heavy libraries, and the one room that may import each. (The benchmarks call the paper's chain of libraries itself.)
@@ -172,7 +172,7 @@ def global_random(name: str, source: str) -> list[str]:
 
 def talk(name: str, source: str) -> list[str]:
     """Report printing and warning; only the command line speaks to its user."""
-    if name.split(".")[0] == "__main__":
+    if name.split(".")[0] in ("commands", "__main__"):
         return []
     words = {"print", "builtins.print", "warnings.warn"}
     return [f"{name}:{line}: calls {used}" for line, used in uses(source) if used in words]

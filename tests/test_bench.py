@@ -309,10 +309,11 @@ NAMES = "scan, sizes, memory, shapes, kernels, live, import, study"
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        ("scans", f"argument NAME: must be one of {NAMES}, got 'scans'"),
+        ("scans", f"argument NAME: must be one of {NAMES}, got 'scans'; did you mean 'scan'?"),
+        ("--quik", "there is no option '--quik'; did you mean '--quick'?"),
         ("--seed -1", "argument --seed: must be a whole number >= 0, got '-1'"),
     ],
-    ids=["name", "seed"],
+    ids=["name", "option", "seed"],
 )
 def test_refusals_are_one_sentence(words, sentence, capsys):
     assert main(["bench", *words.split()]) == 2

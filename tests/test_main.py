@@ -75,6 +75,7 @@ HELP = {
         "GeoJSON files, or folders of them (default: the paper's 34 maps)",
         "the method: ours, as published, or both (default: both)",
         "number of processes (default: one on each core)",
+        "dask cluster that does the work (default: this machine)",
         "forget the journal of earlier runs",
         "Once stopped, a study continues when the same command is given again",
     ],
@@ -314,7 +315,7 @@ REFUSED = {
     ),
     "too many shapes": (
         "map --shapes 5",
-        'primkit: the paper\'s style has room for at most 4 shapes, got 5; use style="free" for more',
+        "primkit: the paper's style has room for at most 4 shapes, got 5; use --style free for more",
     ),
     "fractional seed": (
         "map --seed 0.5",
@@ -372,7 +373,7 @@ REFUSED = {
     "a folder without maps": ("study --maps empty", "primkit: empty: must hold maps (.geojson or .json), got none"),
     "no such folder": (
         "study --maps nowhere",
-        "primkit: nowhere: the name of a map must end in .geojson or .json, got no ending",
+        "primkit: nowhere: there is no such folder in {here}",
     ),
     "two maps of one name": (
         "study --maps maps maps/one.geojson",
@@ -395,6 +396,42 @@ REFUSED = {
         "primkit: no room found for 4 shapes with a gap of 0.9 m on a board of 1 m: "
         "ask for fewer shapes, a smaller gap or a larger board",
     ),
+    "out without a name": (
+        ["map", "--out", ""],
+        f"primkit map: argument --out: must be the name of a file or folder, got ''{SEE['map']}",
+    ),
+    "study's out without a name": (
+        ["study", "--out", " "],
+        f"primkit study: argument --out: must be the name of a file or folder, got ' '{SEE['study']}",
+    ),
+    "map without a name": (
+        ["map", "--map", ""],
+        f"primkit map: argument --map: must be the name of a file or folder, got ''{SEE['map']}",
+    ),
+    "misspelt command": ("stduy", "primkit: there is no command 'stduy'; did you mean 'study'? (see primkit --help)"),
+    "no command": ("fly", "primkit: there is no command 'fly' (see primkit --help)"),
+    "misspelt option": (
+        "map --shape 3",
+        f"primkit map: there is no option '--shape'; did you mean '--shapes'?{SEE['map']}",
+    ),
+    "misspelt option with its value": (
+        "make-map --stile=free",
+        f"primkit make-map: there is no option '--stile'; did you mean '--style'?{SEE['make-map']}",
+    ),
+    "no option": ("map --colour red", f"primkit map: there is no option '--colour'{SEE['map']}"),
+    "misspelt option before the command": (
+        "--versoin",
+        "primkit: there is no option '--versoin'; did you mean '--version'? (see primkit --help)",
+    ),
+    "one word too many": ("map 4", f"primkit map: there is no place for '4'{SEE['map']}"),
+    "a scheduler's address": (
+        "study --maps maps --scheduler localhost",
+        "primkit: a scheduler's address must look like tcp://192.168.0.2:8786, got 'localhost'",
+    ),
+    "a scheduler and a number of processes": (
+        "study --maps maps --scheduler tcp://127.0.0.1:8786 --jobs 2",
+        "primkit: a cluster works with all of its workers: leave out --jobs or --scheduler",
+    ),
     "map's ending": (
         "make-map --out map.png",
         "primkit: map.png: the name of a map must end in .geojson or .json, got .png",
@@ -410,17 +447,17 @@ def test_one_sentence_and_exit_code_2(here, words, sentence, capsys):
     (here / "empty").mkdir()
     (here / "other").mkdir()
     (here / "other" / JOURNAL).write_bytes(b"text\n")
-    assert main(words.split()) == 2
+    assert main(words.split() if isinstance(words, str) else words) == 2
     out, err = capsys.readouterr()
     assert err == sentence.format(here=here, notes=Path("maps/notes.txt"), no=here / "no") + "\n"
     assert "Traceback" not in out
 
 
-@pytest.mark.parametrize("words", ["maps", "map --shape 3", "map 4", "study --maps"], ids=str)
+@pytest.mark.parametrize("words", ["study --maps", "map --shapes", "accuracy --sweeps --maps 3"], ids=str)
 def test_words_that_argparse_refuses_are_one_line_too(words, capsys):
     assert main(words.split()) == 2
     out, err = capsys.readouterr()
-    assert re.fullmatch(r"primkit( map| study)?: .* \(see primkit( map| study)? --help\)\n", err)
+    assert re.fullmatch(r"primkit (\w+): .* \(see primkit \1 --help\)\n", err)
     assert out == ""
 
 

@@ -1,4 +1,4 @@
-"""Command: ``primkit bench``: which benchmarks there are, and what their command line says.
+"""Command: what ``primkit bench`` does: which benchmarks there are, one after the other.
 
 In:  names of benchmarks, a seed, a folder or none.
 Out: texts to be printed as they come; ``bench.csv`` and ``bench.png`` in the folder.
@@ -8,8 +8,7 @@ Nothing heavy is loaded before a benchmark runs: the command line's help must an
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,21 +35,6 @@ EXAMPLES = (
     "\nbenchmarks:\n" + "".join(f"  {name:8} {text}\n" for name, text in NAMES.items())
 )
 CSV, PICTURE = "bench.csv", "bench.png"
-
-
-def add_options(parser: argparse.ArgumentParser, whole: Callable[[str], int]) -> None:
-    """Add the options to the command's parser; ``whole`` reads a whole number."""
-    parser.add_argument("names", metavar="NAME", nargs="*", type=_name, help="which benchmarks (default: all)")
-    parser.add_argument("--quick", action="store_true", help="do very little: it shows that all runs")
-    parser.add_argument("--seed", metavar="S", type=whole, default=0, help="seed of all that is random (default: 0)")
-    text = f"folder for {CSV} and {PICTURE} (default: none is written)"
-    parser.add_argument("--out", metavar="DIR", type=Path, default=None, help=text)
-
-
-def _name(word: str) -> str:
-    if word not in NAMES:
-        raise argparse.ArgumentTypeError(f"must be one of {', '.join(NAMES)}, got {word!r}")
-    return word
 
 
 def texts(names: Sequence[str], version: str, *, quick: bool, seed: int, out: Path | None) -> Iterator[str]:

@@ -19,6 +19,7 @@ The rooms, each of which imports only those before it:
 ``experiment.py``  one map, one method, one row
 ``journal.py``     rows written down one by one, so that a killed study continues
 ``many.py``        all of them, in parallel
+``cluster.py``     on a cluster's workers
 ``table.py``       a table with intervals as text, HTML and CSV
 ``published.py``   the paper's figures, and the tables that put ours beside them
 ``estimate.py``    a figure with its 95 % interval
@@ -34,6 +35,7 @@ Source: the paper's section 3.3, "Results".
 """
 
 from .accuracy import AccuracyLine, AccuracyTable, accuracy_as_csv, run_accuracy
+from .cluster import on_cluster
 from .estimate import Estimate
 from .experiment import Experiment, Run, perform, run
 from .journal import JOURNAL, make_folder, n_rows
@@ -49,6 +51,7 @@ from .wander import wander
 
 __all__ = [
     "run_study",
+    "on_cluster",
     "tables",
     "rows_as_csv",
     "write_tables",

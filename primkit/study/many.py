@@ -17,11 +17,15 @@ Source: the paper's section 3.3, "Results"; the 34 maps are ``formats.paper_suit
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sized
 from contextlib import closing, contextmanager
+from functools import cache
 from pathlib import Path
+from threading import Thread
+from time import sleep
 from typing import Any, TypeVar
 
 from numpy.typing import ArrayLike
@@ -76,7 +80,7 @@ def run_study(
         computed again, unless the map, the method, the sensor, the seed or the program has changed.
     jobs : int, optional
         Number of processes; -1 for one on each core. None leaves it to ``joblib.parallel_config``, which also
-        chooses another backend, such as dask. Times are most comparable with 1.
+        chooses another backend; ``on_cluster`` uses it. Times are most comparable with 1.
     progress : bool
         Show a progress bar on stderr, when that is a terminal.
 
@@ -144,7 +148,7 @@ def maps_in(paths: Iterable[StrPath]) -> dict[str, World]:
     ValueError
         If a folder holds no map, a file is no map, or two have the same name.
     OSError
-        If a file cannot be read.
+        If a folder or file is not there, or cannot be read.
 
     Examples
     --------
@@ -153,6 +157,8 @@ def maps_in(paths: Iterable[StrPath]) -> dict[str, World]:
     """
     files: list[Path] = []
     for path in map(Path, paths):
+        if not path.exists() and path.suffix.lower() not in MAP_ENDINGS:
+            raise FileNotFoundError(f"{path}: there is no such folder in {path.absolute().parent}")
         inside = sorted(p for p in path.iterdir() if p.suffix.lower() in MAP_ENDINGS) if path.is_dir() else [path]
         if not inside:
             raise ValueError(f"{path}: must hold maps ({' or '.join(MAP_ENDINGS)}), got none")
@@ -200,7 +206,7 @@ def _performed(
                     rows[number] = done[key]
                 else:
                     keys[number] = key
-                    yield delayed(_numbered)(number, experiment)
+                    yield delayed(_as_child)(os.getpid(), _numbered, number, experiment)
         except Exception as error:  # a world that cannot be drawn: what runs by now is to end, and be written, first
             failures.append(error)
 
@@ -238,7 +244,8 @@ def in_parallel(
 
     work = list(work)
     with _deaf_children():
-        running = Parallel(n_jobs=jobs, return_as="generator")(delayed(function)(*arguments) for arguments in work)
+        tasks = (delayed(_as_child)(os.getpid(), function, *arguments) for arguments in work)
+        running = Parallel(n_jobs=jobs, return_as="generator")(tasks)
     with closing(running) as results, _bar(len(work), progress, unit) as bar:
         done = []
         for result in results:
@@ -249,6 +256,28 @@ def in_parallel(
 
 def _numbered(number: int, experiment: Experiment) -> tuple[int, Row]:
     return number, perform(experiment)
+
+
+def _as_child(parent: int, function: Callable[..., T], *arguments: Any) -> T:
+    """Call a function for a parent process: on one core alone, and in a process that ends with its parent."""
+    from joblib import parallel_config
+
+    _end_with(parent)
+    with parallel_config(backend="sequential"):  # else scikit-learn would hand its own steps to the cluster's workers
+        return function(*arguments)
+
+
+@cache
+def _end_with(parent: int) -> None:
+    """Watch the parent, once in each process: when it is killed, its workers would wait for minutes."""
+    if os.getppid() == parent:  # else this is the parent itself, or a machine elsewhere
+        Thread(target=_watch, args=(parent,), daemon=True).start()
+
+
+def _watch(parent: int) -> None:
+    while os.getppid() == parent:  # an orphan is given another parent; not on Windows, where it lives on for a while
+        sleep(0.5)
+    os._exit(1)  # from a thread, nothing less ends a process
 
 
 def _bar(total: int | None, progress: bool, unit: str = "row") -> Any:

@@ -1,0 +1,168 @@
+"""Board: ``primkit map`` maps one board, ``primkit make-map`` draws one.
+
+In:  the options of the command.
+Out: a report on the screen, a picture and maps in a folder; or one map in a file.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from math import isfinite
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from .words import Parser, count, millimetres, path, say, share, whole
+
+if TYPE_CHECKING:
+    from ..evaluation import Report
+    from ..lidar import Lidar
+    from ..measure import Detection
+    from ..study import Run
+    from ..world import Style, World
+
+SHAPES = 4
+
+MAP_TEXT = "simulate a board, map it, and compare with the truth"
+MAP_EXAMPLES = """\
+examples:
+  primkit map
+  primkit map --shapes 3 --seed 11 --style free
+  primkit map --settings paper           the published method
+  primkit map --noise 2 --spurious 0.01  a worse sensor: 2 mm, and 1 % of random ranges
+"""
+MAKE_TEXT = "write a random board to a GeoJSON file"
+MAKE_EXAMPLES = """\
+examples:
+  primkit make-map --shapes 3 --seed 11
+  primkit make-map --kinds circle circle pentagon --out room.geojson
+  primkit make-map --shapes 6 --style free --gap 30 --out room.geojson
+"""
+
+
+# --- options ------------------------------------------------------------------------------------------------
+
+
+def map_options(parser: Parser) -> None:
+    """Add the options of ``primkit map``."""
+    _board_options(parser)
+    parser.option("--map", "FILE", path, None, "a board of your own, GeoJSON", shown="a random one")
+    parser.choice("--settings", ("robust", "paper"), "the method: ours, or as published")
+    parser.option("--noise", "MM", millimetres, 0.0, "standard deviation of the ranges in mm")
+    parser.option("--spurious", "SHARE", share, 0.0, "share of beams with a random range, 0 to 1")
+    parser.option("--out", "DIR", path, Path("out"), "folder for map.png, found.geojson and truth.geojson")
+
+
+def make_map_options(parser: Parser) -> None:
+    """Add the options of ``primkit make-map``."""
+    _board_options(parser)
+    parser.option("--gap", "MM", millimetres, 50.0, "least distance between two shapes in mm")
+    kinds = "circle, triangle, rectangle or pentagon, for each shape"
+    parser.option("--kinds", "KIND", str, None, kinds, nargs="+", shown="drawn")
+    parser.option("--out", "FILE", path, Path("map.geojson"), "the file; one that is there is replaced")
+
+
+def _board_options(parser: Parser) -> None:
+    parser.option("--shapes", "N", whole, None, "number of shapes on a board of 1 m x 1 m", shown=SHAPES)
+    parser.option("--seed", "S", whole, 7, "seed of all that is random, a whole number")
+    parser.choice("--style", ("paper", "free"), "paper: upright, at most 4 shapes; free: at any angle", shown="paper")
+
+
+# --- primkit map --------------------------------------------------------------------------------------------
+
+
+def map_board(arguments: argparse.Namespace) -> None:
+    """Simulate one board, map it, print how right it is, and write the picture and the maps."""
+    from ..evaluation import evaluate
+    from ..lidar import Lidar
+    from ..study import METHODS, Experiment, make_folder, run
+
+    world, origin = _board(arguments)
+    lidar = Lidar(noise_std=arguments.noise / 1000, spurious=arguments.spurious)
+    method = arguments.settings.upper()
+    out = make_folder(arguments.out)
+    say(f"Board  {_census(world)}; {world.size:g} m x {world.size:g} m ({origin})")
+    done = run(Experiment("board", world, method, METHODS[method], lidar, seed=arguments.seed))
+    report = evaluate(done.found, world)
+    _tell(world, lidar, done, method)
+    say(f"\n{report}\n")
+    _write(out, world, done, report, arguments.seed)
+
+
+def _board(arguments: argparse.Namespace) -> tuple[World, str]:
+    """Return the user's board, or a random one, and where it comes from."""
+    from ..formats import load_world
+    from ..world import random_world
+
+    if arguments.map is not None:
+        given = [f"--{name}" for name in ("shapes", "style") if getattr(arguments, name) is not None]
+        if given:
+            raise ValueError(f"a board is either a file or random: leave out --map or {' and '.join(given)}")
+        return load_world(arguments.map), str(arguments.map)
+    n = SHAPES if arguments.shapes is None else arguments.shapes
+    style: Style = arguments.style or "paper"
+    return random_world(n, style=style, rng=arguments.seed), f"random: seed {arguments.seed}, {style} style"
+
+
+def _tell(world: World, lidar: Lidar, done: Run, method: str) -> None:
+    """Print what the robot did, saw and found, and how long it took."""
+    from ..robot import skipped_waypoints
+
+    skipped = skipped_waypoints(world)
+    n_poses = len(done.scans) + len(skipped)
+    places = " ".join(f"({x:.2f}, {y:.2f})" for x, y, _ in skipped.round(2) + 0.0)  # + 0.0: not -0.00
+    noise, number = 1000 * lidar.noise_std, "" if done.told is None else f", being told that there are {done.told}"
+    say(f"Robot  {n_poses} way-points, {len(skipped)} skipped inside a shape{f': {places} m' if places else ''}")
+    say(f"LiDAR  {done.scans.hits.sum()} hits on {len(done.points)} cells of 1 mm; range noise {noise:g} mm")
+    say(f"Found  {count(len(done.found), 'shape')} with the settings {method}{number}")
+    robot = f"{done.robot_time:.1f} s (all way-points x {lidar.period:g} s)"
+    say(f"Time   robot {robot}, computing {done.computing_time:.2f} s")
+
+
+def _write(out: Path, world: World, done: Run, report: Report, seed: int) -> None:
+    """Write the picture and the two maps, and say what to open."""
+    from ..formats import save_world
+    from ..plots import plot_story, save_figure
+    from ..segmentation import segment
+    from ..world import World
+
+    method: Literal["link", "kmeans"] = "link" if done.told is None else "kmeans"
+    labels = segment(done.points, done.told, method=method, rng=seed)
+    save_figure(plot_story(world, done.scans, done.points, labels, done.found, report), out / "map.png")
+    save_world(World([d.shape for d in done.found], world.size), out / "found.geojson", properties=_known(done.found))
+    save_world(world, out / "truth.geojson")
+    say(f"Wrote  {out / 'map.png'}, {out / 'found.geojson'}, {out / 'truth.geojson'}")
+    say(f"Next   open {out / 'map.png'} to see it all; in Python, primkit.load_world reads the two maps.")
+
+
+def _census(world: World) -> str:
+    kinds = ", ".join(shape.kind for shape in world.shapes)
+    return count(len(world.shapes), "shape") + (f": {kinds}" if kinds else "")
+
+
+def _known(found: Sequence[Detection]) -> list[dict[str, Any]]:
+    """Return what is known of each found shape beside its outline; metres, and None for what is not finite."""
+    known = []
+    for d in found:
+        rms, margin = (value if isfinite(value) else None for value in (d.rms, d.margin))
+        known.append({"rms": rms, "margin": margin, "n_points": len(d.points), "seen": d.seen})
+    return known
+
+
+# --- primkit make-map ---------------------------------------------------------------------------------------
+
+
+def make_map(arguments: argparse.Namespace) -> None:
+    """Write a random board to a file."""
+    from ..formats import save_world
+    from ..world import random_world
+
+    kinds, n = arguments.kinds, arguments.shapes
+    style: Style = arguments.style or "paper"
+    if n is None:
+        n = SHAPES if kinds is None else len(kinds)
+    world = random_world(n, style=style, kinds=kinds, gap=arguments.gap / 1000, rng=arguments.seed)
+    save_world(world, arguments.out)
+    say(f"Board  {_census(world)} (random: seed {arguments.seed}, {style} style, gap {arguments.gap:g} mm)")
+    say(f"Wrote  {arguments.out}")
+    say(f"Next   primkit map --map {arguments.out}")

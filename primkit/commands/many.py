@@ -1,0 +1,122 @@
+"""Many: ``primkit study`` maps many boards, ``primkit accuracy`` changes one thing at a time.
+
+In:  the options of the command.
+Out: tables on the screen, all numbers as CSV in a folder, and a journal from which a stopped run continues.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+
+from .words import Parser, path, say, whole
+
+STUDY_TEXT = "map many boards: the paper's Tables 1 and 2 beside ours"
+STUDY_EXAMPLES = """\
+examples:
+  primkit study                          34 maps, both methods
+  primkit study --jobs 1                 one process: the most comparable times
+  primkit study --maps maps --out mine   every map in a folder of yours
+  primkit study --scheduler tcp://192.168.0.2:8786
+                                         on the workers of a dask cluster
+
+Once stopped, a study continues when the same command is given again: finished maps
+are in journal.jsonl. --fresh starts anew.
+"""
+ACCURACY_TEXT = "how right, against noise, shapes, scans, strays"
+ACCURACY_EXAMPLES = """\
+examples:
+  primkit accuracy --maps 20             a first look: five minutes on two cores
+  primkit accuracy --sweeps gap spurious --settings robust --maps 500
+"""
+
+
+# --- options ------------------------------------------------------------------------------------------------
+
+
+def study_options(parser: Parser) -> None:
+    """Add the options of ``primkit study``."""
+    parser.option(
+        "--maps", "PATH", path, None, "GeoJSON files, or folders of them", nargs="+", shown="the paper's 34 maps"
+    )
+    _many_options(parser, "the methods", "tables and rows as CSV")
+    parser.add_argument("--fresh", action="store_true", help="forget the journal of earlier runs")
+
+
+def accuracy_options(parser: Parser) -> None:
+    """Add the options of ``primkit accuracy``."""
+    text = "any of suite, noise, shapes, scans, spurious, gap, remedies, partial"
+    parser.option("--sweeps", "NAME", str, None, text, nargs="+", shown="all")
+    parser.option("--maps", "N", partial(whole, least=1), 100, "number of maps for each line, and of drives")
+    _many_options(parser, "maps and noise", "accuracy.csv, accuracy.png and partial.csv")
+
+
+def _many_options(parser: Parser, seeded: str, files: str) -> None:
+    parser.choice("--settings", ("both", "robust", "paper"), "the method: ours, as published, or both")
+    parser.option("--seed", "S", whole, 0, f"seed of {seeded}, a whole number")
+    parser.option("--jobs", "N", partial(whole, least=1), None, "number of processes", shown="one on each core")
+    parser.option("--scheduler", "ADDRESS", str, None, "dask cluster that does the work", shown="this machine")
+    parser.option("--out", "DIR", path, Path("out"), f"folder for the journal, and {files}")
+
+
+@contextmanager
+def _workers(arguments: argparse.Namespace) -> Iterator[int | None]:
+    """Get the workers ready; yields the number of processes, None on a cluster."""
+    from ..study import on_cluster
+
+    if arguments.scheduler is None:
+        yield -1 if arguments.jobs is None else arguments.jobs
+        return
+    if arguments.jobs is not None:
+        raise ValueError("a cluster works with all of its workers: leave out --jobs or --scheduler")
+    with on_cluster(arguments.scheduler):
+        yield None
+
+
+# --- primkit study, primkit accuracy ------------------------------------------------------------------------
+
+
+def study(arguments: argparse.Namespace) -> None:
+    """Map many boards with one method or both, print the tables, and write all numbers."""
+    from ..formats import paper_suite
+    from ..study import JOURNAL, METHODS, make_folder, maps_in, n_rows, run_study, tables, write_tables
+
+    wanted = {name: method for name, method in METHODS.items() if arguments.settings in ("both", name.lower())}
+    maps = paper_suite() if arguments.maps is None else maps_in(arguments.maps)
+    out = make_folder(arguments.out)
+    journal = out / JOURNAL
+    if arguments.fresh:
+        journal.unlink(missing_ok=True)
+    before = n_rows(journal)
+    with _workers(arguments) as jobs:
+        rows = run_study(maps, wanted, folder=out, jobs=jobs, seed=arguments.seed)
+    kept = len(rows) - (n_rows(journal) - before)
+    made = tables(rows)
+    for table in made:
+        say(f"{table}\n")
+    files = write_tables(out, made, rows)
+    say(f"Maps   {len(maps)} with {' and '.join(wanted)}; {kept} of {len(rows)} results were in the journal already")
+    say(f"Wrote  {', '.join(str(out / name) for name in (*files, JOURNAL))}")
+    say(f"Next   open {out / 'rows.csv'}: one line for each map and method, times included.")
+
+
+def accuracy(arguments: argparse.Namespace) -> None:
+    """Change one thing at a time; print how right each method is, and write all numbers and a figure."""
+    from ..plots import PANELS, plot_accuracy, save_figure
+    from ..study import METHODS, AccuracyTable, accuracy_study, make_folder
+
+    wanted = {name: method for name, method in METHODS.items() if arguments.settings in ("both", name.lower())}
+    out, made = make_folder(arguments.out), []
+    with _workers(arguments) as jobs:
+        for table in accuracy_study(
+            arguments.sweeps, arguments.maps, out, settings=wanted, seed=arguments.seed, jobs=jobs
+        ):
+            say(f"{table}\n")
+            made.append(table)
+    if drawn := [table for table in made if isinstance(table, AccuracyTable) and table.sweep in PANELS]:
+        save_figure(plot_accuracy(drawn), out / "accuracy.png")
+    files = [*dict.fromkeys(table.file for table in made), *["accuracy.png"] * bool(drawn)]
+    say(f"Wrote  {', '.join(str(out / name) for name in files)}")

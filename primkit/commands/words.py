@@ -1,0 +1,123 @@
+"""Words: reading what was typed, and printing.
+
+In:  words of the command line.
+Out: values; or one sentence that states the rule and the word, and the nearest word that is known.
+
+>>> whole("4"), millimetres("0.5")
+(4, 0.5)
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from difflib import get_close_matches
+from functools import partial
+from pathlib import Path
+from typing import Any, NoReturn
+
+LOOK: dict[str, Any] = {"formatter_class": argparse.RawDescriptionHelpFormatter, "allow_abbrev": False}
+
+
+# --- in -----------------------------------------------------------------------------------------------------
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that refuses in one sentence, without the usage in front of it."""
+
+    def error(self, message: str) -> NoReturn:
+        """End with a sentence."""
+        self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)\n")
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Refuse unknown words here, where the options of this very command are known."""
+        known, others = super().parse_known_args(args, namespace)
+        if others:
+            word = others[0].partition("=")[0]
+            if not word.startswith("-"):
+                self.error(f"there is no place for {word!r}")
+            options = [option for action in self._actions for option in action.option_strings]
+            self.error(f"there is no option {word!r}{nearest(word, options)}")
+        return known, others
+
+    def option(self, name: str, metavar: str, kind: Callable[[str], Any], default: Any, text: str, **more: Any) -> None:
+        """Add an option whose help ends with its default."""
+        if "shown" in more:
+            default, shown = None, more.pop("shown")
+        else:
+            shown = f"{default:g}" if isinstance(default, float) else default
+        self.add_argument(name, metavar=metavar, type=kind, default=default, help=f"{text} (default: {shown})", **more)
+
+    def choice(self, name: str, words: Sequence[str], text: str, **more: Any) -> None:
+        """Add an option that takes one of these words, the first by default."""
+
+        def one_of(word: str) -> str:
+            if word not in words:
+                raise argparse.ArgumentTypeError(f"must be {' or '.join(words)}, got {word!r}")
+            return word
+
+        self.option(name, "|".join(words), one_of, words[0], text, **more)
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """Return the end of a sentence that names the known word which looks most like this one, if any does.
+
+    >>> nearest("--shape", ["--shapes", "--seed"]), nearest("--colour", ["--shapes", "--seed"])
+    ("; did you mean '--shapes'?", '')
+    """
+    names = {name.lstrip("-"): name for name in known}  # the dashes are alike in all of them
+    close = get_close_matches(word.lstrip("-"), names, n=1)
+    return f"; did you mean {names[close[0]]!r}?" if close else ""
+
+
+def path(word: str) -> Path:
+    """Read the name of a file or folder."""
+    if not word.strip():
+        raise argparse.ArgumentTypeError(f"must be the name of a file or folder, got {word!r}")
+    return Path(word)
+
+
+def whole(word: str, least: int = 0) -> int:
+    """Read a whole number."""
+    if not (word.isascii() and word.isdigit() and len(word) < 20 and int(word) >= least):
+        raise argparse.ArgumentTypeError(f"must be a whole number >= {least}, got {word!r}")
+    return int(word)
+
+
+def _number(word: str, most: float, rule: str) -> float:
+    try:
+        number = float(word)
+    except ValueError:
+        number = -1.0
+    if not 0 <= number <= most:
+        raise argparse.ArgumentTypeError(f"must be {rule}, got {word!r}")
+    return number
+
+
+millimetres = partial(_number, most=sys.float_info.max, rule="a number of millimetres >= 0")
+share = partial(_number, most=1.0, rule="a share from 0 to 1")
+
+
+# --- out ----------------------------------------------------------------------------------------------------
+
+
+def count(n: int, noun: str) -> str:
+    """Return a number of things.
+
+    >>> count(1, "shape"), count(2, "shape")
+    ('1 shape', '2 shapes')
+    """
+    return f"{n} {noun}{'s' * (n != 1)}"
+
+
+def say(text: str) -> None:
+    """Print; what the console has no sign for, in the name of a file, is spelled out."""
+    encoding = sys.stdout.encoding or "utf-8"
+    print(text.encode(encoding, "backslashreplace").decode(encoding))
+
+
+def complain(sentence: str, code: int = 2) -> int:
+    """Print a sentence to stderr, and return the exit code."""
+    print(f"primkit: {sentence}", file=sys.stderr)
+    return code
