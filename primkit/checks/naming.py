@@ -1,0 +1,352 @@
+"""Naming: corners, sides and centre of a polygon, and a fair choice between candidates; the checks of lesson 06.
+
+In:  the student's ``meet(a, b)``, ``sides_and_centroid(corners)`` and ``fair_choice(squares, numbers, n_points,
+     spread)``.
+Out: answers.
+
+>>> meet.reference((0.0, 0.2), (np.pi / 2, 0.1)).round(3).tolist()
+[0.2, 0.1]
+>>> fair_choice.reference(np.array([90e-6, 80e-6]), np.array([3, 10]), 100, 0.001)[0]
+0
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .answer import Case, Check, Fault
+from .judges import array, number, shown
+
+Floats = NDArray[np.float64]
+Pair = tuple[float, float]
+
+RANDOM_CASES = 200
+PARALLEL = 1e-9  # as a sine: far above rounding, far below any corner
+LEAST_BEND = np.radians(5)  # of lines that do meet: their corner is then known to many digits
+COORDINATES = 1e-7  # m: a corner of lines that bend by five degrees loses two digits
+COSTS = 1e-6  # of costs and margins
+
+
+def meet_in(a: Pair, b: Pair) -> Floats | None:
+    """Return where two lines ``n . p = d`` meet, shape (2,), metres; None when they are parallel.
+
+    A line is the pair (angle of its normal in radians, offset in metres).
+    """
+    (angle_a, d_a), (angle_b, d_b) = a, b
+    bend = np.sin(angle_b - angle_a)
+    if abs(bend) < PARALLEL:
+        return None
+    x = d_a * np.sin(angle_b) - d_b * np.sin(angle_a)
+    y = d_b * np.cos(angle_a) - d_a * np.cos(angle_b)
+    return np.array([x, y]) / bend
+
+
+def measured(corners: Floats) -> tuple[Floats, Floats]:
+    """Return the lengths of the sides, from each corner to the next, shape (K,), and the centre of area, shape (2,)."""
+    after = np.roll(corners, -1, axis=0)
+    sides = np.hypot(*(after - corners).T)
+    first = corners[0]  # near the origin no digits are lost
+    (x, y), (u, v) = (corners - first).T, (after - first).T
+    weight = x * v - u * y
+    return sides, first + np.array([(x + u) @ weight, (y + v) @ weight]) / (3 * weight.sum())
+
+
+def cheapest(squares: Floats, numbers: NDArray[np.int64], n_points: int, spread: float) -> tuple[int, float]:
+    """Return which candidate costs least, and its margin: how much more the next one costs (inf without one)."""
+    return _chosen(np.asarray(squares) / spread**2 + np.asarray(numbers) * np.log(n_points))
+
+
+def _chosen(costs: Floats) -> tuple[int, float]:
+    order = np.argsort(costs, kind="stable")
+    margin = costs[order[1]] - costs[order[0]] if len(costs) > 1 else np.inf
+    return int(order[0]), float(margin)
+
+
+# --- where two lines meet ----------------------------------------------------------------------------------------
+
+
+def _line_cases(rng: np.random.Generator) -> Iterator[tuple[Pair, Pair]]:
+    """Yield plain pairs and parallel ones, then random ones; every eighth of those is parallel."""
+    yield (0.0, 0.2), (np.pi / 2, 0.1)
+    yield (0.0, 0.2), (np.pi / 4, 0.0)
+    yield (0.3, 0.2), (0.3, 0.1)  # parallel
+    yield (0.0, 0.2), (np.pi, 0.2)  # parallel, with opposite normals
+    n = 0
+    while n < RANDOM_CASES:
+        angle, other = rng.uniform(-np.pi, np.pi, 2).tolist()
+        d, e = rng.uniform(-0.5, 0.5, 2).tolist()
+        if n % 8 == 0:
+            n += 1
+            yield (angle, d), (angle + np.pi * float(rng.integers(2)), e)
+        elif abs(np.sin(other - angle)) > np.sin(LEAST_BEND):
+            n += 1
+            yield (angle, d), (other, e)
+
+
+def _judge_corner(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
+    """Judge a corner, or None for parallel lines."""
+    if expected is None:
+        return None if got is None else f"got {shown(got)}, expected None, because the lines are parallel"
+    if got is None:
+        return f"got None (is there a return?), expected the corner {shown(expected)}"
+    return array("m", COORDINATES)(got, expected, args)
+
+
+def _with(change: Callable[[Pair], Pair], sign: float = 1.0) -> Callable[[Pair, Pair], Floats | None]:
+    """Return the corner of lines that were read in another way."""
+
+    def corner(a: Pair, b: Pair) -> Floats | None:
+        found = meet_in(change(a), change(b))
+        return None if found is None else sign * found
+
+    return corner
+
+
+def _parallel_alone(cases: list[Case]) -> bool:
+    """Tell whether parallel lines, and nothing else, came out wrong."""
+    return all((case.expected is None) == (case.off is not None) or case.expected is None for case in cases)
+
+
+def _opposite_alone(cases: list[Case]) -> bool:
+    """Tell whether parallel lines with opposite normals, and nothing else, came out wrong."""
+    return all(case.off is None or (case.expected is None and case.args[0][0] != case.args[1][0]) for case in cases)
+
+
+meet = Check(
+    "meet",
+    meet_in,
+    _line_cases,
+    _judge_corner,
+    (
+        Fault(
+            "Right but for parallel lines with opposite normals: sin(pi) is 1e-16 on a computer, and not 0.",
+            when=_opposite_alone,
+        ),
+        Fault("Every corner is right. Parallel lines have none: return None for them.", when=_parallel_alone),
+        Fault(
+            "The angle is that of the normal, which stands square on the line; it is not the line's own direction.",
+            like=_with(lambda line: (line[0] + np.pi / 2, line[1])),
+        ),
+        Fault(
+            "The angle is that of the normal, which stands square on the line; it is not the line's own direction.",
+            like=_with(lambda line: (line[0] - np.pi / 2, line[1])),
+        ),
+        Fault(
+            "That is the corner on the other side of the origin: by the sine of which difference is divided?",
+            like=_with(lambda line: line, -1.0),
+        ),
+        Fault(
+            "Angles are in radians already.",
+            like=_with(lambda line: (float(np.radians(line[0])), line[1])),
+        ),
+    ),
+)
+
+
+# --- sides and centre of a polygon --------------------------------------------------------------------------------
+
+
+def _corner_cases(rng: np.random.Generator) -> Iterator[tuple[Floats]]:
+    """Yield a square, a triangle, one given clockwise, one far off; then random convex ones, every third clockwise."""
+    square, triangle = (
+        np.array([(0.0, 0.0), (0.2, 0.0), (0.2, 0.1), (0.0, 0.1)]),
+        np.array([(0, 0), (0.3, 0), (0, 0.3)]),
+    )
+    house = np.array([(0.0, 0.0), (0.2, 0.0), (0.2, 0.1), (0.1, 0.15), (0.0, 0.1)])
+    yield from ((square,), (house,), (triangle,), (house[::-1].copy(),), (house + np.array([3.0, -2.0]),))
+    n = 0
+    while n < RANDOM_CASES:
+        k = int(rng.integers(3, 6))
+        bearing = np.sort(rng.uniform(0, 2 * np.pi, k))
+        if np.diff(bearing, append=bearing[0] + 2 * np.pi).max() > 0.95 * np.pi or np.diff(bearing).min() < 0.2:
+            continue
+        ring = rng.uniform(-0.4, 0.4, 2) + rng.uniform(0.05, 0.1) * np.column_stack([np.cos(bearing), np.sin(bearing)])
+        n += 1
+        yield (ring[::-1].copy() if n % 3 == 0 else ring,)
+
+
+def _judge_measured(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
+    """Judge the lengths of the sides, then the centre."""
+    if not isinstance(got, (tuple, list)) or len(got) != 2:
+        return f"got {shown(got)}, expected two things: the sides and the centre{_missing(got)}"
+    for name, mine, wanted in zip(("sides", "centre"), got, expected, strict=True):
+        off = array("m")(mine, wanted, args)
+        if off is not None:
+            return f"{name}: {off}"
+    return None
+
+
+def _missing(got: Any) -> str:
+    return " (is there a return?)" if got is None else ""
+
+
+def _centred(centre: Callable[[Floats], Floats]) -> Callable[[Floats], tuple[Floats, Floats]]:
+    """Return the right sides with another centre."""
+    return lambda corners: (measured(corners)[0], centre(corners))
+
+
+def _of_outline(corners: Floats) -> Floats:
+    """Return the mean over the outline, instead of over the area."""
+    sides, after = measured(corners)[0], np.roll(corners, -1, axis=0)
+    return (corners + after).T @ sides / (2 * sides.sum())
+
+
+def _of_extents(corners: Floats) -> Floats:
+    return (corners.min(axis=0) + corners.max(axis=0)) / 2
+
+
+def _unsigned(corners: Floats) -> Floats:
+    """Return the centre with the area's sign forgotten: from the origin the wrong way when clockwise."""
+    (x, y), (u, v) = corners.T, np.roll(corners, -1, axis=0).T
+    weight = x * v - u * y
+    return np.array([(x + u) @ weight, (y + v) @ weight]) / (3 * abs(weight.sum()))
+
+
+def _half(corners: Floats) -> Floats:
+    """Return the centre divided by 6 times the sum, and not by 6 times the area, which is half the sum."""
+    (x, y), (u, v) = corners.T, np.roll(corners, -1, axis=0).T
+    weight = x * v - u * y
+    return np.array([(x + u) @ weight, (y + v) @ weight]) / (6 * weight.sum())
+
+
+def _one_side_short(cases: list[Case]) -> bool:
+    """Tell whether in every case one side is missing."""
+    return all(
+        isinstance(case.got, (tuple, list)) and len(case.got) == 2 and np.shape(case.got[0]) == (len(case.args[0]) - 1,)
+        for case in cases
+    )
+
+
+sides_and_centroid = Check(
+    "sides_and_centroid",
+    measured,
+    _corner_cases,
+    _judge_measured,
+    (
+        Fault(
+            "One side is missing: the outline is closed, so the last corner leads back to the first.",
+            when=_one_side_short,
+        ),
+        Fault(
+            "The sides are right, but each stands one place late: the first one leads from corner 0 to corner 1.",
+            like=lambda corners: (np.roll(measured(corners)[0], 1), measured(corners)[1]),
+        ),
+        Fault(
+            "The sides are right. That centre is the mean of the corners; where two corners stand close together, it "
+            "is drawn to them, and the area's centre is not.",
+            like=_centred(lambda corners: corners.mean(axis=0)),
+        ),
+        Fault(
+            "The sides are right. That centre is the mean along the outline, not over the area.",
+            like=_centred(_of_outline),
+        ),
+        Fault(
+            "The sides are right. That centre is the middle of the extents, which changes when the shape turns.",
+            like=_centred(_of_extents),
+        ),
+        Fault(
+            "Right where the corners go counter-clockwise. Clockwise the area comes out negative, and so do the "
+            "products above it: is the sign lost in one of the two?",
+            like=_centred(_unsigned),
+        ),
+        Fault(
+            "The sides are right. The centre is halved: A is half of the sum of the cross products.",
+            like=_centred(_half),
+        ),
+    ),
+)
+
+
+# --- a fair choice ------------------------------------------------------------------------------------------------
+
+
+def _choice_cases(rng: np.random.Generator) -> Iterator[tuple[Floats, NDArray[np.int64], int, float]]:
+    """Yield a circle against a pentagon, one candidate alone, one that cannot be fitted; then random ones."""
+    yield np.array([1.0e-4, 0.8e-4]), np.array([3, 10]), 100, 0.001
+    yield np.array([4.0e-4, 0.8e-4]), np.array([3, 10]), 100, 0.001
+    yield np.array([1.0e-4]), np.array([3]), 100, 0.001
+    yield np.array([2.0e-4, np.inf, 1.0e-4, 0.9e-4]), np.array([3, 6, 5, 10]), 120, 0.001
+    n = 0
+    while n < RANDOM_CASES:
+        n_points, spread = int(rng.integers(20, 500)), float(rng.uniform(0.0004, 0.01))
+        numbers = rng.permutation([3, 6, 5, 10])[: int(rng.integers(2, 5))]
+        misfit = (
+            n_points * rng.uniform(0.9, 1.1) + np.sort(rng.uniform(0, 60, len(numbers)))[np.argsort(-numbers).argsort()]
+        )
+        costs = misfit + numbers * np.log(n_points)
+        if np.diff(np.sort(costs)).min() > 0.01:
+            n += 1
+            yield misfit * spread**2, numbers, n_points, spread
+
+
+def _judge_choice(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
+    """Judge which candidate was chosen, then the margin."""
+    if not isinstance(got, (tuple, list)) or len(got) != 2:
+        return f"got {shown(got)}, expected two things: the number of the best candidate and its margin{_missing(got)}"
+    off = number()(got[0], expected[0], args)
+    if off is not None:
+        return f"best: {off}"
+    off = number("", COSTS)(got[1], expected[1], args)
+    return None if off is None else f"the best is right, its margin is not: {off}"
+
+
+def _priced(cost: Callable[[Floats, Any, int, float], Floats]) -> Callable[..., tuple[int, float]]:
+    """Return the choice by another cost."""
+    return lambda squares, numbers, n_points, spread: _chosen(cost(squares, numbers, n_points, spread))
+
+
+def _margin_turned(squares: Floats, numbers: Any, n_points: int, spread: float) -> tuple[int, float]:
+    best, margin = cheapest(squares, numbers, n_points, spread)
+    return best, -margin
+
+
+def _margin_to_last(squares: Floats, numbers: Any, n_points: int, spread: float) -> tuple[int, float]:
+    costs = squares / spread**2 + numbers * np.log(n_points)
+    return int(np.argmin(costs)), float(costs.max() - costs.min()) if len(costs) > 1 else np.inf
+
+
+def _alone(cases: list[Case]) -> bool:
+    """Tell whether only the candidate without a rival came out wrong."""
+    return all(case.off is None or len(case.args[0]) == 1 for case in cases)
+
+
+fair_choice = Check(
+    "fair_choice",
+    cheapest,
+    _choice_cases,
+    _judge_choice,
+    (
+        Fault(
+            "Right wherever there is a rival. Without one nothing comes near: the margin is float('inf').", when=_alone
+        ),
+        Fault(
+            "That is the choice by misfit alone: what does a candidate pay for its numbers?",
+            like=_priced(lambda squares, _numbers, _n_points, spread: squares / spread**2),
+        ),
+        Fault(
+            "The price of a number is ln N here. With 2 for each (Akaike's) extra numbers are too cheap.",
+            like=_priced(lambda squares, numbers, _n_points, spread: squares / spread**2 + 2 * numbers),
+        ),
+        Fault(
+            "Square metres over metres: divide the squares by the square of the spread.",
+            like=_priced(lambda squares, numbers, n_points, spread: squares / spread + numbers * np.log(n_points)),
+        ),
+        Fault(
+            "Square metres are added to plain numbers: the squares must be divided by the spread's square first.",
+            like=_priced(lambda squares, numbers, n_points, _spread: squares + numbers * np.log(n_points)),
+        ),
+        Fault(
+            "ln is the natural logarithm: np.log, not np.log10.",
+            like=_priced(lambda squares, numbers, n_points, spread: squares / spread**2 + numbers * np.log10(n_points)),
+        ),
+        Fault("The choice is right. The margin has the wrong sign: the rival costs more.", like=_margin_turned),
+        Fault(
+            "The choice is right. The margin is measured to the worst candidate, not to the next best.",
+            like=_margin_to_last,
+        ),
+    ),
+)

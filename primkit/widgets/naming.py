@@ -1,0 +1,282 @@
+"""Naming: what the points could be, what each candidate costs, and which one is chosen. The slider of lesson 06.
+
+>>> naming()
+Slider: shape, noise, view points, price
+>>> ring = Circle((0, 0), 0.06).outline(100)
+>>> [(one.kind, one.numbers) for one in fitted(ring)]
+[('circle', 3), ('triangle', 6), ('rectangle', 5), ('pentagon', 10)]
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..circles import fit_circle
+from ..evidence import GAP, seen_shares
+from ..grid import Grid
+from ..lidar import Lidar, scan
+from ..outlines import Outlines, from_angle_order, joined
+from ..plots.look import BLUE, GREY, INK, KIND_COLORS, ORANGE, PALE, VERMILION
+from ..refine import refine_hard
+from ..scatter import spread_across
+from ..shapes import Circle, Kind, Polygon, Shape
+from ..world import PENTAGON, World
+from .drawing import Frame, picture
+from .slider import Choice, Explorer, Picture, Slider, explore
+
+Floats = NDArray[np.float64]
+
+FAIR, FREE = "ln N a number", "nothing"
+SURE = 10.0  # a margin above this is very strong (Kass and Raftery, 1995)
+
+TRUTH: dict[str, Shape] = {
+    "circle": Circle((0, 0), 0.065),
+    "small circle": Circle((0, 0), 0.03),
+    "triangle": Polygon([(-0.07, -0.055), (0.08, -0.03), (-0.02, 0.075)]),
+    "rectangle": Polygon([(-0.075, -0.04), (0.075, -0.04), (0.075, 0.04), (-0.075, 0.04)]).moved(angle=np.radians(20)),
+    "pentagon": Polygon(0.07 * PENTAGON).moved(angle=0.3),
+}
+PLACES, FIRST = 12, -2.2  # the robot's places on an ellipse around the shape, the first [rad] at the lower left
+AROUND = (0.175, 0.115)  # m: the ellipse's half axes
+
+FARTHEST = 0.1  # m: every point of the group counts for every candidate
+MOST_RADIUS = 0.25  # m: a larger circle is a wall
+TURNS = 6  # first guesses of an outline, each turned a little further
+CUT = 0.006  # m: how much of a corner a first guess cuts off
+# A closed outline bends at each corner by this at least and at most [rad], and has no shorter side than this [m].
+LEAST_TURN, MOST_TURN, LEAST_SIDE = np.radians(2), np.radians(175), 0.003
+
+STEPS = 21  # an outline is drawn in so many steps a side; every other one where it was not seen
+HARDLY = 0.4  # a side of which less than this share has points near it was hardly seen
+
+BARS = Frame((-0.2, 0.2), (-0.275, 0.14), width=425, height=438, y_ticks=(-0.1, 0.0, 0.1))
+TOP_BAR, ROW, BAR = -0.178, 0.021, (-0.105, 0.115)  # m in that frame: the first bar, one row, from left to right
+LONGEST = 2.5  # times the least cost: longer bars are cut off
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """A candidate: a kind, how many numbers it has, and its best fit; ``shape`` is None when none closes."""
+
+    kind: Kind
+    numbers: int
+    shape: Shape | None
+
+    def misfit(self, points: Floats, spread: float) -> float:
+        """Return the sum of squared distances over the spread's square; infinite without a shape."""
+        if self.shape is None:
+            return float("inf")
+        return float(np.sum(self.shape.signed_distance(points) ** 2)) / spread**2
+
+
+@cache
+def naming() -> Explorer:
+    """Return the slider of lesson 06: a shape, noise, view points, and what a fitted number costs."""
+    return explore(
+        draw_naming,
+        Choice("shape", tuple(TRUTH), start="rectangle"),
+        Slider("noise", 0.0, 15.0, 0.5, start=2.0, unit="mm"),
+        Slider("views", 2, PLACES, 1, start=PLACES, label="view points"),
+        Choice("price", (FAIR, FREE), start=FAIR),
+        settings={
+            "seen all around": {},
+            "one side hidden": {"views": 6},
+            "a circle in 12 mm of noise": {"shape": "circle", "noise": 12.0, "views": 8},
+            "the same, numbers for nothing": {"shape": "circle", "noise": 12.0, "views": 8, "price": FREE},
+            "a small circle in noise": {"shape": "small circle", "noise": 6.0},
+            "a pentagon half seen": {"shape": "pentagon", "noise": 6.0, "views": 5},
+        },
+    )
+
+
+def draw_naming(shape: str, noise: float, views: int, price: str) -> str:
+    """Draw the points of one shape, the chosen outline, and each candidate's cost; noise in mm, seed 0."""
+    truth, spread, poses = TRUTH[shape], spread_across(noise / 1000), view_points(views)
+    grid = Grid(resolution=0.001)
+    grid.add(scan(World([truth]), poses, Lidar(noise_std=noise / 1000), rng=0))
+    points = grid.points()
+    found = fitted(points)
+    misfits = np.array([one.misfit(points, spread) for one in found])
+    prices = np.array([one.numbers for one in found]) * (np.log(len(points)) if price == FAIR else 0.0)
+    costs = misfits + prices
+    best, second = np.argsort(costs, kind="stable")[:2].tolist()
+    margin = float(costs[second] - costs[best])
+    chosen = found[best].shape
+    assert chosen is not None  # a circle fits always, or a rectangle
+    says = _says(found[best].kind, margin, shape, noise, views, len(points))
+    return picture(
+        BARS,
+        BARS.shape(truth, PALE, width=0, fill=0.5),
+        BARS.points(points, INK, size=2.5),
+        *_outline(chosen, points),
+        *(BARS.robot(pose, size=6) for pose in poses),
+        *_bars(found, misfits, prices, best),
+        title=_title(found[best].kind, margin, truth.kind),
+        says=says,
+    )
+
+
+def view_points(views: int) -> Floats:
+    """Return the poses of the robot, one after the other around the shape, shape (views, 3)."""
+    bearing = FIRST + 2 * np.pi / PLACES * np.arange(views)
+    x, y = AROUND[0] * np.cos(bearing), AROUND[1] * np.sin(bearing)
+    return np.column_stack([x, y, np.arctan2(-y, -x)])
+
+
+def fitted(points: Floats) -> tuple[Fitted, ...]:
+    """Return the circle, triangle, upright rectangle and pentagon closest to points, shape (N, 2), metres."""
+    middle = points.mean(axis=0)
+    local = points - middle
+    circle = fit_circle(local)
+    if circle is not None and circle.radius > MOST_RADIUS:
+        circle = None
+    three, square = _closest(local, _even(local, 3)), _closest(local, _even(local, 4), square=True)
+    five = _closest(local, joined(_even(local, 5), *_cut(three, 2), *_cut(square, 1)))
+    rows: tuple[tuple[Kind, int, Circle | Outlines | None], ...] = (
+        ("circle", 3, circle),
+        ("triangle", 6, three),
+        ("rectangle", 5, square),
+        ("pentagon", 10, five),
+    )
+    return tuple(
+        Fitted(kind, numbers, (one.polygon() if isinstance(one, Outlines) else one).moved(middle) if one else None)
+        for kind, numbers, one in rows
+    )
+
+
+def _even(points: Floats, k: int) -> Outlines:
+    """Return first guesses of k sides at even angles, each as far out as the points reach, in several turns."""
+    angles = 2 * np.pi / k * (np.arange(k) + np.arange(TURNS)[:, None] / TURNS)
+    heights = points @ np.stack([np.cos(angles), np.sin(angles)], axis=1)  # (TURNS, N, k)
+    return from_angle_order(angles, heights.max(axis=1))
+
+
+def _cut(outline: Outlines | None, corners: int) -> list[Outlines]:
+    """Return first guesses with so many sides more: that many corners of an outline are cut off, in all ways."""
+    if outline is None:
+        return []
+    angles, places = outline.angles[0], outline.corners()[0]
+    bend = np.mod(angles - np.roll(angles, 1), 2 * np.pi)
+    new = np.roll(angles, 1) + bend / 2
+    offsets = places[:, 0] * np.cos(new) + places[:, 1] * np.sin(new) - CUT
+    ways = [list(way) for way in combinations(range(len(angles)), corners)]
+    sides = [(np.append(angles, new[way]), np.append(outline.offsets[0], offsets[way])) for way in ways]
+    return [from_angle_order(np.array([a for a, _ in sides]), np.array([d for _, d in sides]))]
+
+
+def _closest(points: Floats, guess: Outlines, *, square: bool = False) -> Outlines | None:
+    """Give each point to a side and refit until nothing moves; return the closest outline that closes, or None."""
+    found = refine_hard(points, guess, FARTHEST, square=square)
+    turn = np.mod(np.roll(found.angles, -1, axis=1) - found.angles, 2 * np.pi)
+    begin, end = found.spans()
+    closed = ((turn >= LEAST_TURN) & (turn <= MOST_TURN) & (end - begin >= LEAST_SIDE)).all(axis=1)
+    closed &= np.abs(turn.sum(axis=1) - 2 * np.pi) < 1e-6
+    if not closed.any():
+        return None
+    found = found[closed]
+    squares = (found.distances(points).max(axis=2) ** 2).sum(axis=1)
+    best = int(np.argmin(squares))
+    return found[best : best + 1]
+
+
+def _outline(shape: Shape, points: Floats) -> list[str]:
+    """Draw the chosen outline, dashed where no point lies near; a side that was hardly seen has a question mark."""
+    from scipy.spatial import cKDTree
+
+    color, marks, near = KIND_COLORS[shape.kind], [], cKDTree(points)
+    if isinstance(shape, Circle):
+        ring = shape.outline(4 * STEPS)
+        stretches = np.stack([ring, np.roll(ring, -1, axis=0)], axis=1)
+    else:
+        steps = np.linspace(0, 1, STEPS)[:, None]
+        sides = [start + steps * edge for start, edge in zip(shape.vertices, shape.edges, strict=True)]
+        stretches = np.vstack([np.stack([side[:-1], side[1:]], axis=1) for side in sides])
+        middles, shares = shape.vertices + shape.edges / 2, seen_shares(shape, points)
+        hidden = [middle for middle, share in zip(middles, shares, strict=True) if share < HARDLY]
+        marks = [BARS.text(middle, "?", VERMILION, "middle", (0, 6), 18) for middle in hidden]
+    seen = near.query(stretches.mean(axis=1))[0] <= GAP
+    dashes = np.flatnonzero(~seen)[::2]
+    parts = [BARS.segments(*np.swapaxes(stretches[rows], 0, 1), color, 2.5) for rows in (seen, dashes)]
+    return [*parts, *marks]
+
+
+def _bars(found: tuple[Fitted, ...], misfits: Floats, prices: Floats, best: int) -> list[str]:
+    """Draw below the shape what each candidate costs: its misfit, and the price of its numbers."""
+    (left, right), least = BAR, float(np.min(misfits + prices))
+    unit = (right - left) / (LONGEST * max(least, 1.0))
+    floor = BARS.y[0]
+    parts = [BARS.area([(-0.2, floor), (0.2, floor), (0.2, -0.138), (-0.2, -0.138)], "#FFFFFF", 1.0)]
+    parts.append(BARS.segments([(-0.2, -0.138)], [(0.2, -0.138)], PALE))
+    parts += [BARS.text((-0.195, -0.158), "cost [-] =", INK), BARS.points([(-0.108, -0.155)], BLUE, "square", 10)]
+    parts += [BARS.text((-0.098, -0.158), "misfit +", INK), BARS.points([(-0.033, -0.155)], ORANGE, "diamond", 9)]
+    parts += [BARS.text((-0.023, -0.158), "price of its numbers", INK)]
+    for row, (one, misfit, price) in enumerate(zip(found, misfits.tolist(), prices.tolist(), strict=True)):
+        y = TOP_BAR - ROW * row
+        name = ("\u25b6 " if row == best else "") + one.kind
+        parts.append(BARS.text((left - 0.004, y - 0.005), name, INK if row == best else GREY, "end"))
+        if one.shape is None:
+            parts.append(BARS.text((left + 0.003, y - 0.005), "none that closes", GREY))
+            continue
+        middle = min(left + misfit * unit, right)
+        end = min(left + (misfit + price) * unit, right)
+        parts += [_bar(left, middle, y, BLUE), _bar(middle, end, y, ORANGE)]
+        cut = " \u226b" if misfit + price > LONGEST * max(least, 1.0) else ""
+        parts.append(BARS.text((end + 0.004, y - 0.005), f"{misfit + price:,.0f}{cut}", INK))
+    return parts
+
+
+def _bar(start: float, end: float, y: float, color: str) -> str:
+    half = 0.3 * ROW
+    return BARS.area([(start, y - half), (end, y - half), (end, y + half), (start, y + half)], color, 0.85)
+
+
+def _title(kind: Kind, margin: float, truth: Kind) -> str:
+    """Say what was chosen, by how much, and whether it is right."""
+    return f"{kind.capitalize()}, margin {margin:.0f}: {_verdict(margin)}, and {'right' if kind == truth else 'wrong'}"
+
+
+def _verdict(margin: float) -> str:
+    return "sure" if margin > SURE else "not sure"
+
+
+def _says(kind: Kind, margin: float, shape: str, noise: float, views: int, n_points: int) -> str:
+    """Say in a sentence what the picture shows."""
+    seen = f"{n_points} points on a {shape}, from {views} view points with noise of {noise:g} mm"
+    return f"{seen}: the cheapest candidate is a {kind}, by a margin of {margin:.0f}, which is {_verdict(margin)}."
+
+
+def diagram() -> Picture:
+    """Return the drawing behind the lesson's formula: two lines n . p = d, and the corner in which they meet."""
+    angles, offsets = np.radians([20.0, 100.0]), np.array([0.4, 0.28])
+    normals = np.column_stack([np.cos(angles), np.sin(angles)])
+    corner = np.linalg.solve(normals, offsets)
+    feet, along = offsets[:, None] * normals, np.column_stack([-normals[:, 1], normals[:, 0]])
+    frame = Frame((-0.12, 0.63), (-0.1, 0.42), width=525, height=389)
+    zero = np.zeros((2, 2))
+    svg = picture(
+        frame,
+        frame.segments(feet - 0.7 * along, feet + 0.7 * along, PALE, 2),
+        frame.segments([corner], [corner - 0.32 * along[0]], BLUE, 4),
+        frame.segments([corner], [corner + 0.36 * along[1]], ORANGE, 4),
+        frame.segments(zero, feet, GREY, 1.5, "5 4"),
+        frame.segments(zero, 0.12 * normals, VERMILION, 4),
+        frame.points([corner], VERMILION, "ring", 14),
+        frame.points(feet, GREY, "square", 6),
+        frame.points([(0, 0)], INK, size=8),
+        frame.text((0, 0), "origin", shift=(-14, 20), anchor="middle"),
+        frame.text(0.12 * normals[0], "n1", VERMILION, shift=(2, 18), size=16),
+        frame.text(0.12 * normals[1], "n2", VERMILION, shift=(-26, 2), size=16),
+        frame.text(0.72 * feet[0], "d1", INK, shift=(0, -10), size=16),
+        frame.text(0.75 * feet[1], "d2", INK, shift=(10, 4), size=16),
+        frame.text(corner - 0.25 * along[0], "side 1", BLUE, shift=(8, 6), size=14),
+        frame.text(corner + 0.33 * along[1], "side 2", ORANGE, shift=(0, 24), size=14),
+        frame.text(corner, "the corner p", INK, shift=(12, -8), size=14),
+        title="A corner lies on both lines",
+        says="Two lines, each at its distance d along its normal n from the origin; the corner is on both.",
+    )
+    return Picture(svg, "Diagram: two lines and their corner")
