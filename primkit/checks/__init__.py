@@ -21,6 +21,7 @@ The rooms, each of which imports only those before it:
 ``answer.py``  ``Check``: cases, reference, judge, faults by name
 ``rays.py``    lesson 01: a beam meets a wall, or a circle
 ``cells.py``   lesson 02: metres to a cell, a scan into the set of cells
+``edges.py``   lesson 04: a line, its inliers, its fit, the loop around them
 ``arcs.py``    lesson 05: a circle through many points, and its RMS
 ``naming.py``  lesson 06: corners, sides and centre, a fair choice
 =============  =====================================================
@@ -29,17 +30,36 @@ The rooms, each of which imports only those before it:
 from .answer import Answer, Check, Fault
 from .arcs import circle_rms, fit_circle
 from .cells import occupy, to_cells
+from .edges import fit_line, inliers_of, line_through, ransac_line
 from .naming import fair_choice, meet, sides_and_centroid
 from .rays import ray_circle, ray_segment
 
 # Every task of the course, in its order: tests hold each of them against tests/answers.
-TASKS = (ray_segment, ray_circle, to_cells, occupy, fit_circle, circle_rms, meet, sides_and_centroid, fair_choice)
+TASKS = (
+    ray_segment,
+    ray_circle,
+    to_cells,
+    occupy,
+    line_through,
+    inliers_of,
+    fit_line,
+    ransac_line,
+    fit_circle,
+    circle_rms,
+    meet,
+    sides_and_centroid,
+    fair_choice,
+)
 
 __all__ = [
     "ray_segment",
     "ray_circle",
     "to_cells",
     "occupy",
+    "line_through",
+    "inliers_of",
+    "fit_line",
+    "ransac_line",
     "fit_circle",
     "circle_rms",
     "meet",

@@ -1,0 +1,369 @@
+"""Edges: the line through a sample, its inliers, the best fit, and the loop around them; the checks of lesson 04.
+
+In:  the student's ``line_through(p, q)``, ``inliers_of(points, line, threshold)``, ``fit_line(points)`` and
+     ``ransac_line(points, threshold, trials, rng)``.
+Out: answers. A line is (angle, offset) of ``n . p = d``: the bearing of its unit normal n, and d in metres.
+
+>>> line_through(lambda p, q: ...)
+○ not attempted: line_through still returns `...`.
+>>> inliers_of.reference(np.array([(0.2, 0.0), (0.3, 5.0)]), (0.0, 0.2), 0.1).tolist()
+[True, True]
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arguments import ROUNDING
+from ..lines import LINE
+from ..lines import fit_line as best_fit
+from ..ransac import run_ransac
+from .answer import Case, Check, Fault
+from .judges import as_line, line, shown
+
+Floats = NDArray[np.float64]
+Pair = tuple[float, float]  # angle and offset of a line
+
+RANDOM_CASES = 200
+RANSAC_CASES = 24  # each is a few hundred trials of the student's own loop
+EDGE = 1e-9  # m: a point this near to the band's boundary is on whichever side rounding puts it
+ENOUGH = 0.9  # of the inliers that the library's line has: another sample may miss a few at the wall's ends
+OFF_FIT = 1.0  # of the threshold: how far a line may lie from the best fit of its inliers; one refit comes to 0.6
+
+
+def through(p: Floats, q: Floats) -> Pair | None:
+    """Return the line through two points; None when they are the same."""
+    along = q - p
+    if not along.any():
+        return None
+    angle = float(np.arctan2(-along[0], along[1]))  # a quarter turn from the line's own direction
+    return angle, float(p @ (np.cos(angle), np.sin(angle)))
+
+
+def near(points: Floats, line: Any, threshold: float) -> NDArray[np.bool_]:
+    """Return which points are at most ``threshold`` metres from a line, boundary included."""
+    angle, offset = as_line(line) or line  # a Line, or its two numbers
+    inside: NDArray[np.bool_] = np.abs(points @ (np.cos(angle), np.sin(angle)) - offset) <= threshold + ROUNDING
+    return inside
+
+
+def fitted(points: Floats) -> Pair | None:
+    """Return the line with the least squared distances; None for fewer than two different points."""
+    return as_line(best_fit(points))
+
+
+def best_of(points: Floats, threshold: float, trials: int, rng: Any) -> tuple[Pair, NDArray[np.bool_]] | None:
+    """Return the best line among random samples, refitted, and its inliers; None when no sample fixes a line."""
+    found = run_ransac(points, LINE, threshold, trials=trials, rng=rng)
+    if found is None:
+        return None
+    angle, offset = found.params.tolist()
+    return (angle, offset), found.inliers
+
+
+# --- cases -----------------------------------------------------------------------------------------------------
+
+
+def _pairs(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+    """Yield a level, an upright and a slanted pair and a doubled point, then random ones with some of each."""
+    yield np.array([0.0, 0.1]), np.array([0.2, 0.1])
+    yield np.array([0.3, 0.0]), np.array([0.3, 0.2])  # upright
+    yield np.array([-0.3, 0.2]), np.array([-0.3, -0.1])  # downwards, left of the origin
+    yield np.array([0.1, 0.0]), np.array([0.0, 0.1])
+    yield np.array([0.2, 0.1]), np.array([0.2, 0.1])  # the same point twice
+    n = 0
+    while n < RANDOM_CASES:
+        p, q = rng.uniform(-0.5, 0.5, (2, 2))
+        if n % 10 == 0:
+            q[0] = p[0]
+        if np.hypot(*(q - p)) > 0.01:
+            n += 1
+            yield (p, p.copy()) if n % 15 == 0 else (p, q)
+
+
+def _bands(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+    """Yield points on both boundaries of a band and on a line without noise, then random ones off the boundary."""
+    yield np.array([(0.25, 0.0), (0.375, 0.1), (0.125, -0.2), (0.5, 0.0), (0.0, 0.3)]), (0.0, 0.25), 0.125
+    yield np.array([(0.25, 0.0), (0.25, 0.4), (0.251, 0.1)]), (0.0, 0.25), 0.0
+    for _ in range(RANDOM_CASES):
+        angle, offset = float(rng.uniform(-np.pi, np.pi)), float(rng.uniform(-0.4, 0.4))
+        threshold = float(rng.uniform(0.001, 0.02))
+        points = _wall(rng, angle, offset, 30, threshold) + rng.uniform(-1, 1, (30, 1)) * threshold
+        distance = np.abs(points @ (np.cos(angle), np.sin(angle)) - offset)
+        yield points[np.abs(distance - threshold) > EDGE], (angle, offset), threshold
+
+
+def _clouds(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+    """Yield points exactly on level, upright and slanted lines and too few for one, then noisy walls."""
+    steps = np.linspace(-0.1, 0.1, 11)
+    yield (np.column_stack([steps, np.full(11, 0.2)]),)
+    yield (np.column_stack([np.full(11, 0.3), steps]),)  # upright
+    yield (np.column_stack([steps, 0.5 * steps + 0.1]),)
+    yield (np.full((4, 2), 0.25),)  # the same point four times
+    yield (np.array([(0.1, 0.2)]),)
+    for _ in range(RANDOM_CASES):
+        angle, offset = float(rng.uniform(-np.pi, np.pi)), float(rng.uniform(-0.4, 0.4))
+        yield (_wall(rng, angle, offset, int(rng.integers(8, 60)), 0.004),)
+
+
+def _scenes(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+    """Yield points without noise, then a noisy wall among clutter each, and what fixes no line."""
+    level = np.column_stack([np.linspace(-0.2, 0.2, 12), np.full(12, 0.1)])
+    yield np.vstack([level, [(0.0, 0.3), (0.1, -0.2), (-0.1, 0.25)]]), 0.002, 100, np.random.default_rng(1)
+    yield np.array([(0.1, 0.1)]), 0.002, 10, np.random.default_rng(2)
+    yield np.full((3, 2), 0.1), 0.002, 10, np.random.default_rng(3)
+    for seed in range(RANSAC_CASES):
+        angle, offset = float(rng.uniform(-np.pi, np.pi)), float(rng.uniform(-0.2, 0.2))
+        noise = float(rng.uniform(0.001, 0.002))
+        wall = _wall(rng, angle, offset, 50, noise)
+        clutter = rng.uniform(-0.5, 0.5, (25, 2))
+        points = np.vstack([wall, wall[:5], clutter])  # some points twice: a sample of these fixes no line
+        yield points[rng.permutation(len(points))], 3 * noise, 150, np.random.default_rng(seed)
+
+
+def _wall(rng: np.random.Generator, angle: float, offset: float, n: int, noise: float) -> Floats:
+    """Return n points along 0.3 m of a line, with noise across it."""
+    normal = np.array([np.cos(angle), np.sin(angle)])
+    along = np.array([-normal[1], normal[0]])
+    places = np.linspace(-0.15, 0.15, n) + rng.uniform(-0.1, 0.1)
+    noisy: Floats = places[:, None] * along + (offset + rng.normal(0, noise, n))[:, None] * normal
+    return noisy
+
+
+# --- judges ----------------------------------------------------------------------------------------------------
+
+
+def _mask(value: Any, n: int) -> NDArray[np.bool_] | None:
+    """Return a result as n times True or False; None for what is something else."""
+    try:
+        mask = np.asarray(value)
+    except ValueError:
+        return None
+    return mask if mask.shape == (n,) and mask.dtype == bool else None
+
+
+def _judge_mask(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None:
+    """Judge which points are inliers."""
+    mask = _mask(got, len(expected))
+    if mask is None:
+        hint = " (is there a return?)" if got is None else ""
+        return f"got {shown(got)}, expected True or False for each of the {len(expected)} points{hint}"
+    extra, missing = int((mask & ~expected).sum()), int((~mask & expected).sum())
+    return f"{extra} points too many are inliers, and {missing} too few" if extra or missing else None
+
+
+NOT_ITS_OWN, NOT_REFITTED, FEW = "not those within the threshold of the line", "best fit of its own inliers", "got only"
+
+
+def _judge_consensus(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
+    """Judge a line and its inliers against the points: they must agree, be many, and be fitted."""
+    points, threshold = args[0], args[1]
+    if expected is None or got is None:
+        return None if got is expected else f"got {shown(got)}, expected {_wanted(expected)}"
+    pair = got if isinstance(got, (tuple, list)) and len(got) == 2 else (None, None)
+    own, mask = as_line(pair[0]), _mask(pair[1], len(points))
+    if own is None or mask is None or not np.isfinite(own).all():
+        return f"got {shown(got)}, expected {_wanted(expected)}"
+    distance = np.abs(points @ (np.cos(own[0]), np.sin(own[0])) - own[1])
+    wrong = (mask != (distance <= threshold)) & (np.abs(distance - threshold) > EDGE)
+    if wrong.any():
+        return f"{int(wrong.sum())} of the inliers are {NOT_ITS_OWN} that is returned"
+    most = int(expected[1].sum())
+    if mask.sum() < ENOUGH * most:
+        return f"{FEW} {int(mask.sum())} inliers, expected about {most}"
+    best = fitted(points[mask])
+    off = np.inf if best is None else float(np.abs(_apart(points[mask], best, own)).max())
+    # Only a sample goes exactly through two points; it may stay where a refit would lose inliers.
+    sampled = (
+        off > EDGE and np.count_nonzero(distance <= EDGE) >= 2 and near(points, best, threshold).sum() >= mask.sum()
+    )
+    return (
+        f"the line is {shown(1000 * off)} mm off the {NOT_REFITTED}" if sampled or off > OFF_FIT * threshold else None
+    )
+
+
+def _wanted(expected: Any) -> str:
+    """Say what the loop should return."""
+    return "None" if expected is None else "a line (angle, offset) and True or False for each point"
+
+
+def _apart(points: Floats, one: Pair, other: Pair) -> Floats:
+    """Return how far apart two lines are at points, metres; the opposite normal is the same line."""
+    (a, b), (c, d) = one, other
+    sign = 1.0 if np.cos(a - c) > 0 else -1.0
+    apart: Floats = (points @ (np.cos(a), np.sin(a)) - b) - sign * (points @ (np.cos(c), np.sin(c)) - d)
+    return apart
+
+
+# --- usual faults ----------------------------------------------------------------------------------------------
+
+
+def _through_with(change: Any) -> Any:
+    """Return ``through`` with its angle and offset changed by one mistake."""
+
+    def changed(p: Floats, q: Floats) -> Pair | None:
+        found = through(p, q)
+        return found and change(*found, p, q)
+
+    return changed
+
+
+def _along(_angle: float, _offset: float, p: Floats, q: Floats) -> Pair:
+    """Return the line with the bearing of its direction in the place of its normal's."""
+    angle = float(np.arctan2(*(q - p)[::-1]))
+    return angle, float(p @ (np.cos(angle), np.sin(angle)))
+
+
+def _near_with(distance: Any) -> Any:
+    """Return ``near`` with another idea of distance."""
+    return lambda points, line, threshold: distance(points, *(as_line(line) or line)) <= threshold + ROUNDING
+
+
+def _not_counting_the_boundary(points: Floats, line: Any, threshold: float) -> NDArray[np.bool_]:
+    inside: NDArray[np.bool_] = near(points, line, threshold) & near(points, line, threshold - 2 * ROUNDING)
+    return inside
+
+
+def _off_only(cases: list[Case], special: Any) -> bool:
+    """Tell whether the special cases, and nothing else, are off."""
+    return all(special(case) for case in cases if case.off)
+
+
+def _upright(case: Case) -> bool:
+    p, q = case.args
+    return bool(p[0] == q[0] and p[1] != q[1])
+
+
+def _as_a_number(cases: list[Case]) -> bool:
+    """Tell whether the inliers were counted."""
+    return all(isinstance(case.got, (int, np.integer)) and case.got == case.expected.sum() for case in cases)
+
+
+def _as_indices(cases: list[Case]) -> bool:
+    """Tell whether the inliers' numbers came back, alone or in a tuple as ``np.nonzero`` gives them."""
+    alone = (case.got[0] if isinstance(case.got, tuple) and case.got else case.got for case in cases)
+    return all(shown(got) == shown(np.flatnonzero(c.expected)) for got, c in zip(alone, cases, strict=True))
+
+
+def _least_squares_in_y(cases: list[Case]) -> bool:
+    """Tell whether walls that are not too steep came back as the fit of y = a x + b."""
+    judge, flat = line(1e-6), [c for c in cases if np.ptp(c.args[0][:, 0]) > 0.1 and np.ptp(c.args[0][:, 1]) > 0.05]
+    return all(judge(case.got, _y_on_x(case.args[0]), case.args) is None for case in flat)
+
+
+def _y_on_x(points: Floats) -> Pair:
+    """Return the line y = a x + b with the least squares along y."""
+    x, y = (points - points.mean(axis=0)).T
+    angle = float(np.arctan2(1.0, -(x @ y) / (x @ x)))
+    return angle, float(points.mean(axis=0) @ (np.cos(angle), np.sin(angle)))
+
+
+def _by_svd(row: int, *, centred: bool) -> Any:
+    """Return a fit that takes the wrong direction, or forgets to centre."""
+
+    def fit(points: Floats) -> Pair | None:
+        if fitted(points) is None:
+            return None
+        normal = np.linalg.svd(points - points.mean(axis=0) * centred)[2][row]
+        return float(np.arctan2(normal[1], normal[0])), float(normal @ points.mean(axis=0))
+
+    return fit
+
+
+def _told(words: str) -> Any:
+    """Return a predicate: some case was judged with these words."""
+    return lambda cases: any(words in (case.off or "") for case in cases)
+
+
+line_through = Check(
+    "line_through",
+    through,
+    _pairs,
+    line(),
+    (
+        Fault(
+            "Twice the same point fixes no line: return None before anything is divided.",
+            when=lambda cases: _off_only(cases, lambda case: case.expected is None),
+        ),
+        Fault(
+            "Upright lines come out wrong: is something divided by a difference in x?",
+            when=lambda cases: _off_only(cases, lambda case: _upright(case) or case.expected is None),
+        ),
+        Fault("That is the bearing of the line itself: its normal is a quarter turn away.", like=_through_with(_along)),
+        Fault(
+            "The offset has a sign: it belongs to the normal that you return.",
+            like=_through_with(lambda angle, offset, _p, _q: (angle, abs(offset))),
+        ),
+        Fault(
+            "The normal must have length 1: else the offset is no distance in metres.",
+            like=_through_with(lambda angle, offset, p, q: (angle, offset * float(np.hypot(*(q - p))))),
+        ),
+        Fault(
+            "Angles are in radians, not in degrees.",
+            like=_through_with(lambda angle, offset, _p, _q: (float(np.degrees(angle)), offset)),
+        ),
+    ),
+)
+
+inliers_of = Check(
+    "inliers_of",
+    near,
+    _bands,
+    _judge_mask,
+    (
+        Fault("That is how many they are: asked for is True or False for each point.", when=_as_a_number),
+        Fault("Those are the numbers of the inliers: asked for is True or False for each point.", when=_as_indices),
+        Fault("A point exactly on the boundary is an inlier: < or <= ?", like=_not_counting_the_boundary),
+        Fault(
+            "Points far away on one side are inliers: a signed distance below zero is small, but not near.",
+            like=_near_with(lambda p, a, d: p @ (np.cos(a), np.sin(a)) - d),
+        ),
+        Fault(
+            "Is the offset subtracted? n . p alone is the distance from a line through the origin.",
+            like=_near_with(lambda p, a, _d: np.abs(p @ (np.cos(a), np.sin(a)))),
+        ),
+        Fault(
+            "Are sine and cosine in the right places? n = (cos angle, sin angle).",
+            like=_near_with(lambda p, a, d: np.abs(p @ (np.sin(a), np.cos(a)) - d)),
+        ),
+    ),
+)
+
+fit_line = Check(
+    "fit_line",
+    fitted,
+    _clouds,
+    line(),
+    (
+        Fault(
+            "Fewer than two different points fix no line: return None.",
+            when=lambda cases: _off_only(cases, lambda case: case.expected is None),
+        ),
+        Fault("That fits y = a x + b: it measures along y, and upright walls fail.", when=_least_squares_in_y),
+        Fault(
+            "That is the direction of most scatter, along the wall: the normal is across.",
+            like=_by_svd(0, centred=True),
+        ),
+        Fault("Is the mean subtracted before the directions are taken?", like=_by_svd(1, centred=False)),
+    ),
+)
+
+ransac_line = Check(
+    "ransac_line",
+    best_of,
+    _scenes,
+    _judge_consensus,
+    (
+        Fault(
+            "Where no two points differ there is no line: return None.",
+            when=lambda cases: _off_only(cases, lambda case: case.expected is None),
+        ),
+        Fault("Inliers belong to the line that is returned: take them anew after the refit.", when=_told(NOT_ITS_OWN)),
+        Fault("Far fewer inliers than possible: is the best trial kept, or the first, or the last?", when=_told(FEW)),
+        Fault("The line still goes through its two points: fit it to all its inliers.", when=_told(NOT_REFITTED)),
+    ),
+)
