@@ -27,9 +27,11 @@ from itertools import product
 from typing import Any
 
 from ..arguments import short
-from .drawing import sentence, side_by_side, size_of, what_it_says
+from .drawing import WIDEST, sentence, side_by_side, size_of, what_it_says
 
 Draw = Callable[..., str]
+
+READOUT = 640  # px: three lines of this width hold 250 letters
 
 
 @dataclass(frozen=True)
@@ -106,10 +108,12 @@ class Choice:
         return value in self.options
 
     def widget(self) -> Any:
-        """Return a drop-down list of ipywidgets."""
+        """Return buttons of ipywidgets, all options in sight: Lab takes the arrow keys away from a drop-down list."""
         import ipywidgets
 
-        return ipywidgets.Dropdown(options=self.options, value=self.start, **_named(self))
+        named = _named(self) | {"layout": _wide(WIDEST)}
+        named["style"] |= {"button_width": "auto"}
+        return ipywidgets.ToggleButtons(options=self.options, value=self.start, **named)
 
 
 Control = Slider | Choice
@@ -164,16 +168,16 @@ class Explorer:
         import ipywidgets
 
         svg = self.draw()  # at the start an error is not caught: a lesson that cannot begin should say so
-        width, height = size_of(svg)
+        width, _ = size_of(svg)
         # Of one size, whatever is drawn: the page below must not jump.
-        self._image = ipywidgets.HTML(svg, layout={"width": f"{width}px", "height": f"{height + 8}px"})
-        self._readout = ipywidgets.HTML(_spoken(svg), layout={"width": f"{width}px", "min_height": "44px"})
+        self._image = ipywidgets.HTML(svg, layout=_wide(width))
+        self._readout = ipywidgets.HTML(_spoken(svg), layout=_wide(READOUT) | {"min_height": "66px"})
         self._knobs = {control.name: control.widget() for control in self.controls}
         self._quiet = False
         for knob in self._knobs.values():
             knob.observe(self._redraw, names="value")
         buttons = [self._button(name) for name in self.settings]
-        row = ipywidgets.HBox(buttons, layout={"flex_flow": "row wrap"})
+        row = ipywidgets.HBox(buttons, layout=_wide(WIDEST) | {"flex_flow": "row wrap"})
         return ipywidgets.VBox([*self._knobs.values(), row, self._image, self._readout])
 
     def set(self, **values: Any) -> None:
@@ -255,7 +259,12 @@ def explore(draw: Draw, *controls: Control, settings: Mapping[str, Mapping[str, 
 def _named(control: Control) -> dict[str, Any]:
     """Return what all widgets of controls share: the name with its unit, and room for it."""
     label = (control.label or control.name) + (f" [{control.unit}]" if control.unit else "")
-    return {"description": label, "style": {"description_width": "130px"}, "layout": {"width": "425px"}}
+    return {"description": label, "style": {"description_width": "130px"}, "layout": _wide(425)}
+
+
+def _wide(width: int) -> dict[str, str]:
+    """Return a layout of so many pixels, or of the page's width where that is less, as on a phone."""
+    return {"width": f"{width}px", "max_width": "calc(100% - 4px)"}  # ipywidgets puts 2 px around everything
 
 
 def _decimals(step: float) -> int:
