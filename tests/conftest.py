@@ -1,5 +1,7 @@
 """What holds for all tests: the same examples on every run, and pictures without a window."""
 
+from pathlib import Path
+
 import matplotlib
 from hypothesis import settings
 
@@ -12,3 +14,9 @@ settings.load_profile("primkit")
 # For this process only. The environment variable MPLBACKEND would reach the notebooks' kernels as well, which then
 # show no pictures.
 matplotlib.use("Agg")
+
+
+def pytest_addoption(parser):
+    parser.addoption(
+        "--screenshots", type=Path, metavar="DIR", help="keep the browser's pictures of the lessons in this folder"
+    )

@@ -1,0 +1,69 @@
+"""One Jupyter and one browser for all tests in here; without a browser they are skipped, or fail where one must be."""
+
+import os
+import shutil
+
+import numpy as np
+import pytest
+from playwright.sync_api import sync_playwright
+
+from .lab import enter, jupyter
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+WAITS = pytest.StashKey()  # the waits of each lesson, from a key press to the picture, in ms
+
+
+@pytest.fixture(scope="package")
+def browser():
+    """Chromium without a window. PRIMKIT_BROWSER=required makes its absence a failure."""
+    program = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if program is None:
+        absent = pytest.fail if os.environ.get("PRIMKIT_BROWSER") == "required" else pytest.skip
+        absent(f"the lessons are tried in a browser, and none is installed: {', '.join(BROWSERS)}", pytrace=False)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="package")
+def address(tmp_path_factory):
+    """Where Jupyter answers, with a copy of the lessons."""
+    with jupyter(tmp_path_factory.mktemp("jupyter")) as address:
+        yield address
+
+
+@pytest.fixture(scope="package")
+def lab(browser, address):
+    """A page with Jupyter Lab in it."""
+    page = browser.new_page(viewport={"width": 1280, "height": 1000})
+    page.set_default_timeout(20_000)
+    enter(page, address)
+    yield page
+    page.close()
+
+
+@pytest.fixture(scope="package")
+def screenshots(request, tmp_path_factory):
+    """The folder for pictures of the lessons: --screenshots, or a temporary one."""
+    folder = request.config.getoption("screenshots", None) or tmp_path_factory.mktemp("screenshots")
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+@pytest.fixture(scope="package")
+def waits(request):
+    """Where the measured waits are gathered, by lesson, to be shown in the end."""
+    return request.config.stash.setdefault(WAITS, {})
+
+
+def pytest_terminal_summary(terminalreporter, config):
+    """Show how long a key press takes to become a picture."""
+    waits = config.stash.get(WAITS, {})
+    if not waits:
+        return
+    terminalreporter.section("from a key press to the changed picture")
+    terminalreporter.write_line(f"{'lesson':30} median [ms]  95 % below [ms]  presses")
+    for lesson, times in waits.items():
+        median, most = np.percentile(times, [50, 95])
+        terminalreporter.write_line(f"{lesson:30} {median:11.0f}  {most:15.0f}  {len(times):7}")

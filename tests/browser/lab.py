@@ -1,0 +1,177 @@
+"""Jupyter with a copy of the lessons, and a lesson in its page.
+
+Nothing outlives the tests, whatever ends them: the server stops when its standard input is closed, which the
+operating system does even for a process that was killed; kernels and browsers follow those who started them.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+from pathlib import Path
+from urllib.error import URLError
+from urllib.request import urlopen
+
+from .panel import Panel, panels
+
+ROOT = Path(__file__).resolve().parents[2]
+LESSONS = [path.stem for path in sorted((ROOT / "notebooks").glob("*.ipynb"))]
+PATIENCE = 60  # s: for a server to come up, on a machine that is busy
+
+SERVER = """
+import os, signal, sys, threading
+
+def wait_for_the_end():
+    sys.stdin.read()
+    os.kill(os.getpid(), signal.SIGTERM)
+
+threading.Thread(target=wait_for_the_end, daemon=True).start()
+
+from jupyterlab.labapp import main
+
+main()
+"""
+
+TOKEN = "lessons"
+OPTIONS = [
+    *("--no-browser", "--allow-root", "--ServerApp.ip=127.0.0.1", "--ServerApp.port=0"),
+    *(f"--IdentityProvider.token={TOKEN}", "--LabApp.expose_app_in_browser=True"),
+]
+
+# Lab's own settings: no pop-up with news from the network, and all cells in the page, also those out of sight.
+SETTINGS = {
+    "labconfig/page_config.json": {"disabledExtensions": {"@jupyterlab/apputils-extension:announcements": True}},
+    "lab/user-settings/@jupyterlab/notebook-extension/tracker.jupyterlab-settings": {"windowingMode": "none"},
+}
+
+
+@contextmanager
+def jupyter(folder: Path):
+    """Run Jupyter with a copy of the lessons in ``folder``, and all that it keeps beside them; gives its address."""
+    notebooks = shutil.copytree(ROOT / "notebooks", folder / "notebooks", ignore=shutil.ignore_patterns(".*"))
+    for name, content in SETTINGS.items():
+        path = folder / "config" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps(content))
+    homes = {f"JUPYTER_{kind.upper()}_DIR": str(folder / kind) for kind in ("config", "data", "runtime")}
+    command = [sys.executable, "-c", SERVER, *OPTIONS, f"--ServerApp.root_dir={notebooks}"]
+    with (
+        open(folder / "log.txt", "w") as log,
+        subprocess.Popen(
+            command,
+            env=os.environ | homes | {"IPYTHONDIR": str(folder / "ipython")},
+            stdin=subprocess.PIPE,
+            stdout=log,
+            stderr=log,
+        ) as server,
+    ):
+        try:
+            yield _address(server, folder)
+        finally:
+            _stop(server)
+
+
+def _address(server, folder):
+    """Return where the server answers; it writes that down itself, as the port is free for it to choose."""
+    give_up = time.monotonic() + PATIENCE
+    while server.poll() is None and time.monotonic() < give_up:
+        time.sleep(0.05)
+        for path in (folder / "runtime").glob("jpserver-*.json"):
+            try:
+                url = json.loads(path.read_text())["url"]
+                urlopen(f"{url}api?token={TOKEN}").close()
+                return url
+            except (ValueError, URLError):
+                pass  # not yet written to the end, or not yet listening
+    raise RuntimeError(f"Jupyter did not come up; it says:\n{(folder / 'log.txt').read_text()}")
+
+
+def _stop(server):
+    """Let the server end its kernels and itself; insist if it does not."""
+    server.stdin.close()
+    try:
+        server.wait(10)
+    except subprocess.TimeoutExpired:
+        server.kill()
+
+
+def enter(page, address):
+    """Show Lab with a single document at a time, which leaves the most room, and wait until it takes commands."""
+    page.goto(f"{address}doc?reset&token={TOKEN}")
+    page.wait_for_function("window.jupyterapp", timeout=1000 * PATIENCE)
+    page.evaluate("window.jupyterapp.restored.then(() => true)")
+
+
+OPEN = """async (path) => {
+    const open = await window.jupyterapp.commands.execute("docmanager:open", { path, factory: "Notebook" });
+    await open.context.ready;
+    await open.sessionContext.ready;
+    const said = [];
+    open.sessionContext.iopubMessage.connect((_, { header, content }) => {
+        if (header.msg_type === "error") said.push(`${content.ename}: ${content.evalue}`);
+        if (content.name === "stderr") said.push(content.text);
+    });
+    return { open, said };
+}"""
+
+# The kernel answers in the order of the questions. Twice: of a slider's moves in quick succession, the last is sent
+# when the first is done.
+SETTLE = """async ({ open }) => {
+    const kernel = open.sessionContext.session.kernel;
+    for (let i = 0; i < 2; i++)
+        await kernel.requestExecute({ code: "", silent: true, store_history: false }).done;
+    await new Promise((seen) => requestAnimationFrame(() => setTimeout(seen)));
+}"""
+
+CLOSE = """async ({ open }) => {
+    await open.sessionContext.shutdown();
+    open.context.model.dirty = false;
+    open.dispose();
+}"""
+
+
+class Lesson:
+    """A lesson that is open in Lab, with all its cells run."""
+
+    def __init__(self, page, name: str, slider_cells: int) -> None:
+        self.page, self.name, self.slider_cells = page, name, slider_cells
+        self._handle = page.evaluate_handle(OPEN, f"{name}.ipynb")
+        page.evaluate("window.jupyterapp.commands.execute('notebook:run-all-cells')")
+        self.settle()
+        self.said(anew=True)  # while it opens, the kernel speaks of widgets that are not yet there
+        self.panels: list[Panel] = panels(page, slider_cells, self.settle)
+
+    def settle(self) -> None:
+        """Wait until the kernel has answered all that was asked, and the page shows it."""
+        self._handle.evaluate(SETTLE)
+
+    def said(self, anew: bool = False) -> list[str]:
+        """Return the errors and warnings that the kernel sent after the cells were run; ``anew`` forgets them."""
+        return self._handle.evaluate("({ said }, anew) => (anew ? said.splice(0) : said)", anew)
+
+    def widen(self, width: int, height: int = 1000) -> None:
+        """Show the lesson in a window of this size."""
+        self.page.set_viewport_size({"width": width, "height": height})
+        self.settle()
+
+    def height(self) -> int:
+        """Return how tall a window would have to be to show the whole lesson; browsers end at 16,000 px."""
+        tall = "(panel) => panel.scrollHeight"
+        return min(16_000, 150 + self.page.locator(".jp-Notebook .jp-WindowedPanel-outer").evaluate(tall))
+
+    def close(self) -> None:
+        """Close the lesson and end its kernel."""
+        self._handle.evaluate(CLOSE)
+
+
+@contextmanager
+def opened(page, name: str, slider_cells: int):
+    """Open a lesson, run it, and close it in the end."""
+    lesson = Lesson(page, name, slider_cells)
+    try:
+        yield lesson
+    finally:
+        lesson.close()

@@ -1,0 +1,169 @@
+"""Every lesson in a real browser: it runs, each slider moves its picture by keys and by mouse, and nothing jumps.
+
+Each rule is a function from an open lesson, or from one of its panels, to sentences, one for each breach. It is held on
+every lesson, and shown a lesson in which much is broken, which it must report.
+"""
+
+import json
+import re
+from functools import partial
+from itertools import cycle, islice
+
+import numpy as np
+import pytest
+
+from .lab import LESSONS, ROOT, opened
+
+WIDE, NARROW = 1280, 390  # px: a laptop, and a phone
+PRESSES = 24  # measured key presses for each lesson
+UNBEARABLE = 1000  # ms: far above what is measured, as the machine may be busy
+
+ARROWS = ("ArrowRight", "ArrowRight", "ArrowLeft", "End", "Home")
+SLIDER_CELL = re.compile(r"pk\.widgets\.\w+\(\)")
+ERRORS = '[data-mime-type="application/vnd.jupyter.error"], [data-mime-type="application/vnd.jupyter.stderr"]'
+
+
+def slider_cells(name):
+    """Return how many cells of a lesson show a slider."""
+    cells = json.loads((ROOT / "notebooks" / f"{name}.ipynb").read_text(encoding="utf-8"))["cells"]
+    return sum(bool(SLIDER_CELL.fullmatch("".join(cell["source"]).strip())) for cell in cells)
+
+
+def keys_move(panel):
+    for slider in panel.sliders:
+        if not panel.some_change(partial(slider.press, key) for key in ARROWS):
+            yield f"{slider.name}: no arrow key changes the picture"
+    for choice in panel.choices:
+        if not panel.some_change(partial(option.press, "Enter") for option in choice.options):
+            yield f"{choice.name}: Enter on its options changes nothing in the picture"
+    if panel.root.locator("select").count():
+        yield "a drop-down list: Lab keeps the arrow keys to itself"
+
+
+def mouse_moves(panel):
+    for slider in panel.sliders:
+        if not panel.some_change(partial(slider.drag, share) for share in (0.3, 0.7)):
+            yield f"{slider.name}: the mouse changes nothing in the picture"
+    for choice in panel.choices:
+        if not panel.some_change(option.click for option in choice.options):
+            yield f"{choice.name}: a click on its options changes nothing in the picture"
+
+
+def settings_differ(panel):
+    """By mouse and by key the same picture, and another one for each setting."""
+    pictures = {}
+    for setting in panel.settings:
+        panel.changes(setting.click)
+        pictures[setting.name] = panel.picture()
+    if len(set(pictures.values())) < len(panel.settings):
+        yield "two settings show the same picture"
+    for setting in panel.settings:
+        panel.changes(partial(setting.press, "Enter"))
+        if panel.picture() != pictures[setting.name]:
+            yield f"{setting.name}: Enter shows another picture than the mouse"
+
+
+def of_each_panel(rule):
+    """Return the rule for a whole lesson; whatever is moved, no picture is an error, and the page below stays."""
+
+    def checked(lesson):
+        for number, panel in enumerate(lesson.panels, 1):
+            panel.watch_anew()
+            breaches = [*rule(panel), *panel.seen("failures")]
+            heights = panel.seen("heights")
+            if len(heights) > 1:
+                breaches.append(f"the page below jumps: heights of {min(heights)} to {max(heights)} px")
+            yield from (f"slider {number}: {breach}" for breach in breaches)
+
+    return checked
+
+
+def cells_run(lesson):
+    """No error and no warning in the page, and all panels are there."""
+    if len(lesson.panels) != lesson.slider_cells:
+        yield f"{len(lesson.panels)} of {lesson.slider_cells} sliders are shown"
+    for output in lesson.page.locator(ERRORS).all():
+        yield output.inner_text().strip().splitlines()[-1]
+
+
+def callbacks_run(lesson):
+    """No error and no warning from a callback, which the page does not show."""
+    yield from (words.strip().splitlines()[-1] for words in lesson.said() if words.strip())
+
+
+def fits_a_laptop(lesson):
+    """Nothing is cut off or scrolls sideways at the width of a laptop."""
+    lesson.widen(WIDE)
+    yield from too_wide(lesson.page, ".jp-OutputArea-output, .jupyter-widgets, .jp-RenderedMarkdown")
+
+
+def fits_a_phone(lesson):
+    """No slider and no plot is cut off or scrolls sideways at the width of a phone; tables and twins may."""
+    lesson.widen(NARROW)
+    yield from too_wide(lesson.page, ".jupyter-widgets, .jp-RenderedImage")
+
+
+TOO_WIDE = """(cells, selector) => cells.flatMap((cell, number) =>
+    [...cell.querySelectorAll(selector)]
+        .filter((part) => part.clientWidth && part.scrollWidth > part.clientWidth + 1)
+        .filter((part) => !part.parentElement.closest(".jupyter-widgets") || !part.querySelector(".noUi-handle"))
+        .map((part) => `cell ${number + 1}: ${part.scrollWidth} px wide, ${part.clientWidth} px are there`))"""
+
+
+def too_wide(page, selector):
+    """Return a sentence for each part of the page that needs more room than it has; a slider's handle may stick out."""
+    return page.locator(".jp-Cell").evaluate_all(TOO_WIDE, selector)
+
+
+RULES = {
+    "cells run": cells_run,
+    "keys move the picture": of_each_panel(keys_move),
+    "mouse moves the picture": of_each_panel(mouse_moves),
+    "settings differ": of_each_panel(settings_differ),
+    "callbacks run": callbacks_run,
+    "fits a laptop": fits_a_laptop,
+    "fits a phone": fits_a_phone,
+}
+
+
+@pytest.fixture(scope="module", params=LESSONS)
+def lesson(request, lab):
+    lab.set_viewport_size({"width": WIDE, "height": 1000})
+    with opened(lab, request.param, slider_cells(request.param)) as lesson:
+        yield lesson
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_a_lesson_keeps_the_rule(lesson, rule):
+    assert list(RULES[rule](lesson)) == []
+
+
+def test_a_key_press_is_soon_a_picture(lesson, waits):
+    """Measured and shown in the end; what is asserted is far above, as the machine may be busy."""
+    waits[lesson.name] = measured_waits(lesson)
+    assert len(waits[lesson.name]) >= PRESSES
+    assert np.median(waits[lesson.name]) < UNBEARABLE
+
+
+def measured_waits(lesson):
+    """Press arrow keys on the sliders in turn, until enough have changed the picture; return the waits in ms."""
+    waits = []
+    sliders = [(panel, slider) for panel in lesson.panels for slider in panel.sliders]
+    for panel, slider in islice(cycle(sliders), 4 * PRESSES):
+        panel.watch_anew()
+        slider.step()
+        panel.settle()
+        waits += panel.seen("waits")
+        if len(waits) >= PRESSES:
+            break
+    return waits
+
+
+@pytest.mark.parametrize("width", [WIDE, NARROW])
+def test_screenshots_are_taken(lesson, width, screenshots):
+    """To be looked at: the sliders, and the whole lesson."""
+    lesson.widen(width)
+    for number, panel in enumerate(lesson.panels, 1):
+        panel.root.screenshot(path=screenshots / f"{lesson.name}_{width}_slider_{number}.png")
+    lesson.widen(width, lesson.height())
+    lesson.page.screenshot(path=screenshots / f"{lesson.name}_{width}.png")
