@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..grid import Grid
 from ..lidar import Lidar, scan
 from ..lines import LINE, Line
-from ..plots.look import BLUE, CLUSTER_COLORS, GREY, INK, ORANGE, PALE, SKY, VERMILION
+from ..plots.look import BLUE, CLUSTER_COLORS, GREY, INK, ORANGE, SKY, VERMILION
 from ..ransac import draw_samples
 from ..robot import teleport_poses
 from ..shapes import Polygon
@@ -112,8 +112,8 @@ def show_lines(
     """
     middle = points.mean(axis=0) if center is None else np.asarray(center)
     frame = square_frame((float(middle[0]), float(middle[1])), size)
-    small = size > 0.2
-    parts = [frame.points(points, PALE if small else GREY, size=3 if small else 5)]
+    small = size > 0.2  # points on the whole shape; larger ones where a piece is magnified
+    parts = [frame.points(points, GREY, size=3 if small else 6)]
     for k, (line, which) in enumerate(found):
         color, own = CLUSTER_COLORS[k % len(CLUSTER_COLORS)], points[np.asarray(which)]
         parts.append(frame.points(own, color, SIGNS[k % len(SIGNS)], 4.5 if small else 8))
