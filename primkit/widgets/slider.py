@@ -113,7 +113,8 @@ class Choice:
 
         named = _named(self) | {"layout": _wide(WIDEST)}
         named["style"] |= {"button_width": "auto"}
-        return ipywidgets.ToggleButtons(options=self.options, value=self.start, **named)
+        buttons = ipywidgets.ToggleButtons(options=self.options, value=self.start, **named)
+        return buttons.add_class("widget-inline-hbox")  # the name stands to the left, as beside a slider
 
 
 Control = Slider | Choice
