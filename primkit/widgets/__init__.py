@@ -18,6 +18,7 @@ The rooms, each of which imports only those before it:
 ``boards.py``    lesson 00: a board for each seed
 ``rays.py``      lesson 01: beams among shapes
 ``cells.py``     lesson 02: a circle seen through the grid
+``groups.py``    lesson 03: K-Means step by step
 ``edges.py``     lesson 04: RANSAC trial by trial, and its band
 ``arcs.py``      lesson 05: the circles that five ways see in an arc
 ``naming.py``    lesson 06: candidates, what each costs, the chosen one
@@ -29,17 +30,19 @@ from .boards import boards
 from .cells import cells
 from .drawing import what_it_says
 from .edges import edges
+from .groups import groups
 from .naming import naming
 from .rays import rays
 from .slider import Choice, Explorer, Slider, explore
 
 # The lessons' sliders, in the order of the lessons: tests move each of them to all corners of its box.
-SLIDERS = (boards, rays, cells, edges, arcs, naming)
+SLIDERS = (boards, rays, cells, groups, edges, arcs, naming)
 
 __all__ = [
     "boards",
     "rays",
     "cells",
+    "groups",
     "edges",
     "arcs",
     "naming",
