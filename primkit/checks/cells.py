@@ -146,9 +146,9 @@ def _judge_cells(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None:
         return f"got {shown(got)}, expected a set of pairs (i, j){' (is there a return?)' if got is None else ''}"
     if got == expected:
         return None
-    missing, extra = (sorted(map(shown, some)) for some in (expected - got, got - expected))
-    found = f"got {len(got)} cells, expected {len(expected)}"
-    return f"{found}; {f'{missing[0]} is missing' if missing else f'{extra[0]} should not be there'}"
+    missing, extra = (min(map(shown, some), default="") for some in (expected - got, got - expected))
+    off = [f"the cell {missing} is missing"] * bool(missing) + [f"{extra} should not be there"] * bool(extra)
+    return "; ".join(off)
 
 
 def _scan_with(hits: Any) -> Any:
