@@ -9,6 +9,7 @@ Slider: arc, noise, seed, show
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 
 import numpy as np
@@ -21,6 +22,7 @@ from .drawing import Frame, picture, square_frame
 from .slider import Choice, Explorer, Picture, Slider, explore
 
 Floats = NDArray[np.float64]
+XYR = tuple[float, float, float]
 
 TRUTH = Circle((0.0, 0.0), 0.1)  # metres
 POINTS = 60
@@ -60,29 +62,44 @@ def draw_arcs(arc: int, noise: float, seed: int, show: str) -> str:
     """Draw points on an arc of the true circle, and fitted circles: arc in degrees, noise in mm."""
     points = points_on_arc(arc, noise / 1000, seed)
     fits = {name: fitted(points, name) for name, *_ in WAYS}
-    frame = square_frame((0.0, 0.035), VIEW)
-    ways = [way for way in WAYS if show in (ALL, way[0])]
-    outlines = [
-        frame.circle(*_parts(fits[name]), color, wide, dash) for name, color, _, wide, dash in ways if fits[name]
-    ]
-    centers = [
-        frame.points([_parts(fits[name])[0]], color, marker, 9) for name, color, marker, *_ in ways if fits[name]
-    ]
     said = ", ".join(f"{name} {_millimetres(circle)}" for name, circle in fits.items())
+    return _drawn(
+        points,
+        {name: circle for name, circle in fits.items() if show in (ALL, name)},
+        TRUTH,
+        title=f"True 100 mm: Kasa {_millimetres(fits['Kasa'])}, Taubin {_millimetres(fits['Taubin'])}",
+        says=f"{arc} degrees, noise {noise:g} mm, true radius {_millimetres(TRUTH)}: {said}.",
+    )
+
+
+def circles_among(points: Floats, circles: Mapping[str, Circle | XYR | None], truth: Circle, title: str) -> Picture:
+    """Return the picture of points, shape (N, 2), the true circle, and fitted ones by the names of ``WAYS``."""
+    fits = {name: Circle(c[:2], c[2]) if isinstance(c, tuple) else c for name, c in circles.items()}
+    said = ", ".join(f"{name} {_millimetres(circle)}" for name, circle in fits.items())
+    says = f"{len(points)} points; true radius {_millimetres(truth)}: {said}."
+    return Picture(_drawn(points, fits, truth, title=title, says=says), f"Circles among points: {', '.join(fits)}")
+
+
+def _drawn(points: Floats, fits: Mapping[str, Circle | None], truth: Circle, *, title: str, says: str) -> str:
+    """Draw the true circle, the fits that are there, the points, and a legend with all radii."""
+    x, y = truth.center.tolist()
+    frame = square_frame((x, y + 0.035), VIEW)
+    outlines, centers, signs = [], [], [(f"true: {_millimetres(truth)}", PALE, "line")]
+    for name, color, marker, width, dash in WAYS:
+        if name in fits:
+            signs.append((f"{name}: {_millimetres(fits[name])}", color, marker))
+        if circle := fits.get(name):
+            outlines.append(frame.circle(circle.center, circle.radius, color, width, dash))
+            centers.append(frame.points([circle.center], color, marker, 9))
     return picture(
         frame,
-        frame.circle(*_parts(TRUTH), PALE, 9),
+        frame.circle(truth.center, truth.radius, PALE, 9),
         *outlines,
         frame.points(points, INK, size=3),
         *centers,
-        frame.legend(
-            [
-                (f"true: {_millimetres(TRUTH)}", PALE, "line"),
-                *((f"{name}: {_millimetres(fits[name])}", color, marker) for name, color, marker, *_ in ways),
-            ]
-        ),
-        title=f"True 100 mm: Kasa {_millimetres(fits['Kasa'])}, Taubin {_millimetres(fits['Taubin'])}",
-        says=f"{arc} degrees, noise {noise:g} mm, true radius {_millimetres(TRUTH)}: {said}.",
+        frame.legend(signs),
+        title=title,
+        says=says,
     )
 
 
@@ -105,11 +122,6 @@ def fitted(points: Floats, name: str) -> Circle | None:
     return fit_circle(points, "taubin" if name == "Taubin" else "geometric")
 
 
-def _parts(circle: Circle | None) -> tuple[Floats, float]:
-    assert circle is not None  # asked for only where there is one
-    return circle.center, circle.radius
-
-
 def _millimetres(circle: Circle | None) -> str:
     """Return the radius as text; beyond ten metres the points lie on a line as far as one sees."""
     if circle is None or circle.radius > 10:
@@ -119,11 +131,11 @@ def _millimetres(circle: Circle | None) -> str:
 
 def diagram() -> Picture:
     """Return the drawing behind Kasa's bias: the same gap makes a ring whose area grows with the circle."""
-    gap, small, large = 0.02, 0.04, 0.1
-    frame = Frame((0.0, 0.42), (0.0, 0.26), width=579, height=387)
+    gap, small, large = 0.02, 0.05, 0.1
+    frame = Frame((0.0, 0.44), (0.0, 0.26), width=603, height=387)
     parts, east = [], np.array([1.0, 0.0])
     areas = [np.pi * 1e4 * ((radius + gap) ** 2 - radius**2) for radius in (small, large)]
-    for center, radius, area in zip([(0.075, 0.13), (0.285, 0.13)], (small, large), areas, strict=True):
+    for center, radius, area in zip([(0.08, 0.13), (0.3, 0.13)], (small, large), areas, strict=True):
         middle = np.array(center)
         edge, point = middle + radius * east, middle + (radius + gap) * east
         parts += [
@@ -144,7 +156,7 @@ def diagram() -> Picture:
         frame,
         *parts,
         title="The same gap e, but the larger circle pays for a larger ring",
-        says=f"A point p lies e = 20 mm outside a circle of 40 mm and outside one of 100 mm: the rings between point "
+        says=f"A point p lies e = 20 mm outside a circle of 50 mm and outside one of 100 mm: the rings between point "
         f"and circle have {areas[0]:.0f} and {areas[1]:.0f} square centimetres.",
     )
     return Picture(svg, "Diagram: the ring that Kasa's fit counts")

@@ -47,6 +47,14 @@ def fit_by_optimiser(points):
     )
 
 
+def fit_by(method):
+    def fit(points):
+        circle = pk.fit_circle(points, method)
+        return None if circle is None else (*circle.center, circle.radius)
+
+    return fit
+
+
 def fit_with(last_step):
     """Kasa's fit with a last step of its own, and the right answer where the points fix no circle."""
 
@@ -79,7 +87,7 @@ def fit_box(points):
 
 
 def fit_three(points):
-    return pk.fit_circle(points[:3], "kasa")
+    return fit_by("kasa")(points[:3])
 
 
 def fit_any(points):
@@ -124,9 +132,9 @@ ANSWERS = {
         "right": {
             "moments": fit_by_moments,
             "the least distances": fit_by_optimiser,
-            "taubin": lambda points: pk.fit_circle(points, "taubin"),
-            "pratt": lambda points: pk.fit_circle(points, "pratt"),
-            "a circle of the library's": lambda points: pk.fit_circle(points),
+            "taubin": fit_by("taubin"),
+            "pratt": fit_by("pratt"),
+            "geometric": fit_by("geometric"),
         },
         "wrong": {
             "no circle": (fit_any, "Where the points fix none, return None"),
@@ -139,6 +147,8 @@ ANSWERS = {
             "box": (fit_box, "For example fit_circle("),
             "in place": (fit_in_place, "changes what it is given"),
             "minus": (fit_with(lambda a, b, k: (-a, -b, np.sqrt(k + a * a + b * b))), "the centre is off by"),
+            "a Circle": (lambda points: pk.fit_circle(points), "expected three numbers"),
+            "in two parts": (lambda points: ((0.0, 0.0), 0.1), "expected three numbers"),
             "never": (lambda points: None, "got None, expected"),
         },
         "error": {"as many unknowns as points": (fit_by_solve, "must be square")},
