@@ -201,7 +201,8 @@ def _outline(shape: Shape, points: Floats) -> list[str]:
         marks = [BARS.text(middle, "?", VERMILION, "middle", (0, 6), 18) for middle in hidden]
     seen = near.query(stretches.mean(axis=1))[0] <= GAP
     dashes = np.flatnonzero(~seen)[::2]
-    parts = [BARS.segments(*np.swapaxes(stretches[rows], 0, 1), color, 2.5) for rows in (seen, dashes)]
+    starts, ends = stretches[:, 0], stretches[:, 1]
+    parts = [BARS.segments(starts[rows], ends[rows], color, 2.5) for rows in (np.flatnonzero(seen), dashes)]
     return [*parts, *marks]
 
 
