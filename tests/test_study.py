@@ -353,14 +353,17 @@ from primkit.world import random_world
 
 if __name__ == "__main__":
     endless = (random_world(1 + seed % 4, rng=seed) for seed in range(10_000))
-    run_study(endless, {"ROBUST": ROBUST}, lidar=Lidar(noise_std=0.002), jobs=1, folder=sys.argv[1])
+    run_study(endless, {"ROBUST": ROBUST}, lidar=Lidar(noise_std=0.002), jobs=int(sys.argv[2]), folder=sys.argv[1])
 """
 
 
-def test_a_killed_study_continues(tmp_path):
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_killed_study_continues_and_leaves_nobody_behind(tmp_path, jobs):
+    """The workers of a killed study once waited for five minutes for more work."""
+    psutil = pytest.importorskip("psutil")
     (tmp_path / "endless.py").write_text(KILLED, encoding="utf-8")
     run_it = "import runpy, sys; del sys.argv[0]; runpy.run_path(sys.argv[0], run_name='__main__')"
-    command = [sys.executable, "-W", "error", "-c", run_it, tmp_path / "endless.py", tmp_path]
+    command = [sys.executable, "-W", "error", "-c", run_it, tmp_path / "endless.py", tmp_path, str(jobs)]
     journal = tmp_path / JOURNAL
     process = subprocess.Popen(command, cwd=ROOT)
     try:
@@ -369,9 +372,13 @@ def test_a_killed_study_continues(tmp_path):
                 break
             time.sleep(0.005)
         assert process.poll() is None
+        workers = psutil.Process(process.pid).children(recursive=True)
+        assert len(workers) >= (0 if jobs == 1 else jobs)
     finally:
         process.kill()  # SIGKILL: no chance to tidy up
         process.wait()
+    if sys.platform != "win32":
+        assert psutil.wait_procs(workers, timeout=20)[1] == []
     before = journal.read_bytes()
     before = before[: before.rfind(b"\n") + 1]
     assert before.count(b"\n") >= 2
