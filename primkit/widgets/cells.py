@@ -22,7 +22,7 @@ from .slider import Choice, Explorer, Picture, Slider, explore
 
 Floats = NDArray[np.float64]
 
-TRUTH = Circle((0.0037, -0.0023), 0.06)  # not in the middle of a cell, nor on a border
+TRUTH = Circle((0.0036, -0.0047), 0.06)  # not in the middle of a cell, nor on a border
 ROUND = 0.13  # m: the robot drives round the circle at this distance from its centre
 STOPS = 40
 WINDOW = 0.38  # m: the piece of the board that is seen
