@@ -27,20 +27,27 @@ def browser():
 
 
 @pytest.fixture(scope="package")
-def address(tmp_path_factory):
-    """Where Jupyter answers, with a copy of the lessons."""
-    with jupyter(tmp_path_factory.mktemp("jupyter")) as address:
-        yield address
+def folder(tmp_path_factory):
+    """Where Jupyter keeps all it has, with a copy of the lessons in ``notebooks``."""
+    return tmp_path_factory.mktemp("jupyter")
 
 
 @pytest.fixture(scope="package")
-def lab(browser, address):
+def context(browser, folder):
+    """The browser with Jupyter's address as its home."""
+    with jupyter(folder) as address:
+        context = browser.new_context(base_url=address, viewport={"width": 1280, "height": 1000})
+        context.set_default_timeout(30_000)
+        yield context
+        context.close()
+
+
+@pytest.fixture(scope="package")
+def lab(context):
     """A page with Jupyter Lab in it."""
-    page = browser.new_page(viewport={"width": 1280, "height": 1000})
-    page.set_default_timeout(20_000)
-    enter(page, address)
-    yield page
-    page.close()
+    page = context.new_page()
+    enter(page)
+    return page
 
 
 @pytest.fixture(scope="package")

@@ -98,9 +98,9 @@ def _stop(server):
         server.kill()
 
 
-def enter(page, address):
+def enter(page):
     """Show Lab with a single document at a time, which leaves the most room, and wait until it takes commands."""
-    page.goto(f"{address}doc?reset&token={TOKEN}")
+    page.goto(f"/doc?reset&token={TOKEN}")
     page.wait_for_function("window.jupyterapp", timeout=1000 * PATIENCE)
     page.evaluate("window.jupyterapp.restored.then(() => true)")
 

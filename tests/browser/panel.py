@@ -88,9 +88,15 @@ class Panel:
         """Forget the waits, heights and failures so far."""
         self._watch.evaluate("(watch) => watch.anew()")
 
+    def start_over(self) -> None:
+        """Go to the first named setting, and watch anew from there."""
+        for setting in self.settings[:1]:
+            self.changes(setting.click)
+        self.watch_anew()
+
     def seen(self, what: str) -> list:
         """Return what was seen since then: "waits" in ms, "heights" in px, or "failures" in words."""
-        return self._watch.evaluate(f"(watch) => watch.{what}")
+        return list(dict.fromkeys(self._watch.evaluate(f"(watch) => watch.{what}")))
 
     def changes(self, move: Move) -> bool:
         """Make a move; tell whether it changes the picture."""
@@ -98,6 +104,10 @@ class Panel:
         move()
         self.settle()
         return self.picture() != before
+
+    def await_another(self, picture: str) -> None:
+        """Wait until there is another picture than this one: where nobody tells when all is settled."""
+        self.root.page.wait_for_function("([watch, seen]) => watch.markup() !== seen", arg=[self._watch, picture])
 
     def some_change(self, moves: Iterable[Move]) -> bool:
         """Make all moves; tell whether one of them changes the picture, from here or else from a named setting.

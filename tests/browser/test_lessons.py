@@ -68,7 +68,7 @@ def of_each_panel(rule):
 
     def checked(lesson):
         for number, panel in enumerate(lesson.panels, 1):
-            panel.watch_anew()
+            panel.start_over()
             breaches = [*rule(panel), *panel.seen("failures")]
             heights = panel.seen("heights")
             if len(heights) > 1:
@@ -88,7 +88,7 @@ def cells_run(lesson):
 
 def callbacks_run(lesson):
     """No error and no warning from a callback, which the page does not show."""
-    yield from (words.strip().splitlines()[-1] for words in lesson.said() if words.strip())
+    yield from dict.fromkeys(words.strip().splitlines()[-1] for words in lesson.said() if words.strip())
 
 
 def fits_a_laptop(lesson):
@@ -106,12 +106,12 @@ def fits_a_phone(lesson):
 TOO_WIDE = """(cells, selector) => cells.flatMap((cell, number) =>
     [...cell.querySelectorAll(selector)]
         .filter((part) => part.clientWidth && part.scrollWidth > part.clientWidth + 1)
-        .filter((part) => !part.parentElement.closest(".jupyter-widgets") || !part.querySelector(".noUi-handle"))
-        .map((part) => `cell ${number + 1}: ${part.scrollWidth} px wide, ${part.clientWidth} px are there`))"""
+        .map((part) => `cell ${number + 1}: ${part.scrollWidth} px wide, ${part.clientWidth} px are there`)
+        .slice(0, 1))"""
 
 
 def too_wide(page, selector):
-    """Return a sentence for each part of the page that needs more room than it has; a slider's handle may stick out."""
+    """Return a sentence for each cell in which a part needs more room than it has."""
     return page.locator(".jp-Cell").evaluate_all(TOO_WIDE, selector)
 
 

@@ -3,22 +3,21 @@
 (root) => {
   const area = root.closest(".jp-OutputArea") ?? root;
   const failure = /could not be drawn.{0,100}|\w+(Error|Exception): .{0,100}/;
+  const words = () => [...root.querySelectorAll("desc, pre")].map((part) => part.textContent).join("\n");
   const watch = { seen: "", pressed: 0 };
 
+  const height = () => Math.round(area.getBoundingClientRect().height);
   watch.markup = () => [...root.querySelectorAll("svg")].map((svg) => svg.outerHTML).join("");
   watch.look = () => {
-    const add = (list, entry) => list.includes(entry) || list.push(entry);
-    add(watch.heights, Math.round(area.getBoundingClientRect().height));
-    const words = root.textContent.match(failure);
-    if (words) add(watch.failures, words[0]);
+    watch.heights.push(height());
+    watch.failures.push(...(words().match(failure) ?? []).slice(0, 1));
     if (watch.markup() === watch.seen) return;
     if (watch.pressed) watch.waits.push(performance.now() - watch.pressed);
     watch.seen = watch.markup();
     watch.pressed = 0;
   };
   watch.anew = () => {
-    Object.assign(watch, { heights: [], failures: [], waits: [], pressed: 0, seen: watch.markup() });
-    watch.look();
+    Object.assign(watch, { heights: [height()], failures: [], waits: [], pressed: 0, seen: watch.markup() });
   };
 
   watch.anew();

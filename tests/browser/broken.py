@@ -1,0 +1,82 @@
+"""A lesson in which much is broken: each cell breaks one promise, and the rules must say so."""
+
+import json
+
+CELLS = [
+    """
+from itertools import count
+
+import ipywidgets
+import primkit as pk
+from primkit.widgets import Slider, explore
+from primkit.widgets.drawing import board_frame, picture
+
+def ring(k):
+    frame = board_frame()
+    return picture(frame, frame.circle((0, 0), 0.1 * k), title="A circle", says=f"Its radius is {k} dm.")
+
+def explorer(draw):
+    return explore(draw, Slider("k", 1, 4, 1, start=1), settings={"a": {"k": 1}, "b": {"k": 4}})
+""",
+    """
+def fails_between_its_settings(k):
+    if k == 3:
+        raise ValueError("no three")
+    return ring(k)
+
+explorer(fails_between_its_settings)
+""",
+    """
+explorer(lambda k: ring(1))  # a picture that stays
+""",
+    """
+calls = count(1)
+explorer(lambda k: ring(k + 0.001 * next(calls)))  # never the same picture twice
+""",
+    """
+square = '<svg height="{0}00" width="10"></svg>'.format  # of another height for each k, in a plain ipywidget
+slider, drawn = ipywidgets.IntSlider(1, 1, 4, description="k"), ipywidgets.HTML(square(1))
+
+def redraw(change):
+    drawn.value = square(change.new)
+    raise RuntimeError("seen by the kernel alone")
+
+slider.observe(redraw, names="value")
+ipywidgets.VBox([slider, ipywidgets.Dropdown(options=["a", "b"]), drawn])
+""",
+    """
+ipywidgets.HTML('<div style="width: 2000px">too wide</div>')
+""",
+    """
+raise RuntimeError("a cell")
+""",
+]
+
+# For each rule the sentences, as patterns. Sliders are counted in the order of the cells.
+FAILS = r"slider 1: could not be drawn\. ValueError: no three.*"
+JUMPS = r"slider 4: the page below jumps: heights of \d+ to \d+ px"
+BREACHES = {
+    "cells run": [r"4 of 5 sliders are shown", r"RuntimeError: a cell"],
+    "keys move the picture": [
+        FAILS,
+        r"slider 2: k: no arrow key changes the picture",
+        r"slider 4: a drop-down list: Lab keeps the arrow keys to itself",
+        JUMPS,
+    ],
+    "mouse moves the picture": [FAILS, r"slider 2: k: the mouse changes nothing in the picture", JUMPS],
+    "settings differ": [
+        r"slider 2: two settings show the same picture",
+        *(rf"slider 3: {name}: Enter shows another picture than the mouse" for name in "ab"),
+    ],
+    "callbacks run": [r"RuntimeError: seen by the kernel alone"],
+    "fits a laptop": [r"cell 6: 20\d\d px wide, \d+ px are there"],
+    "fits a phone": [r"cell 5: 3\d\d px wide, \d+ px are there", r"cell 6: 2000 px wide, \d+ px are there"],
+}
+
+
+def notebook():
+    """Return the lesson as the text of a notebook."""
+    blank = {"cell_type": "code", "metadata": {}, "outputs": [], "execution_count": None}
+    cells = [blank | {"id": f"cell-{number}", "source": source.strip()} for number, source in enumerate(CELLS)]
+    python = {"kernelspec": {"name": "python3", "display_name": "Python 3"}}
+    return json.dumps({"nbformat": 4, "nbformat_minor": 5, "metadata": python, "cells": cells})
