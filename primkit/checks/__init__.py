@@ -16,23 +16,27 @@ ray_circle: the lesson goes on with the library's, because yours is: not attempt
 
 The rooms, each of which imports only those before it:
 
-=============  =====================================================
-``judges.py``  numbers, labels, corners, circles, lines: right or off
-``answer.py``  ``Check``: cases, reference, judge, faults by name
-``rays.py``    lesson 01: a beam meets a wall, or a circle
-``cells.py``   lesson 02: metres to a cell, a scan into the set of cells
-``edges.py``   lesson 04: a line, its inliers, its fit, the loop around them
-``arcs.py``    lesson 05: a circle through many points, and its RMS
-``naming.py``  lesson 06: corners, sides and centre, a fair choice
-=============  =====================================================
+==============  =====================================================
+``judges.py``   numbers, labels, corners, circles, lines: right or off
+``answer.py``   ``Check``: cases, reference, judge, faults by name
+``rays.py``     lesson 01: a beam meets a wall, or a circle
+``cells.py``    lesson 02: metres to a cell, a scan into the set of cells
+``groups.py``   lesson 03: the two steps of K-Means, the silhouette
+``edges.py``    lesson 04: a line, its inliers, its fit, the loop around them
+``arcs.py``     lesson 05: a circle through many points, and its RMS
+``naming.py``   lesson 06: corners, sides and centre, a fair choice
+``scoring.py``  lesson 07: one-to-one pairs, the weighted accuracy
+==============  =====================================================
 """
 
 from .answer import Answer, Check, Fault
 from .arcs import circle_rms, fit_circle
 from .cells import occupy, to_cells
 from .edges import fit_line, inliers_of, line_through, ransac_line
+from .groups import assign_points, silhouette, update_centers
 from .naming import fair_choice, meet, sides_and_centroid
 from .rays import ray_circle, ray_segment
+from .scoring import match_shapes, weighted_accuracy
 
 # Every task of the course, in its order: tests hold each of them against tests/answers.
 TASKS = (
@@ -40,6 +44,9 @@ TASKS = (
     ray_circle,
     to_cells,
     occupy,
+    assign_points,
+    update_centers,
+    silhouette,
     line_through,
     inliers_of,
     fit_line,
@@ -49,6 +56,8 @@ TASKS = (
     meet,
     sides_and_centroid,
     fair_choice,
+    match_shapes,
+    weighted_accuracy,
 )
 
 __all__ = [
@@ -56,6 +65,9 @@ __all__ = [
     "ray_circle",
     "to_cells",
     "occupy",
+    "assign_points",
+    "update_centers",
+    "silhouette",
     "line_through",
     "inliers_of",
     "fit_line",
@@ -65,6 +77,8 @@ __all__ = [
     "meet",
     "sides_and_centroid",
     "fair_choice",
+    "match_shapes",
+    "weighted_accuracy",
     "Answer",
     "Check",
     "Fault",

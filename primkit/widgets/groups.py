@@ -1,7 +1,7 @@
 """Groups: K-Means step by step, while you choose the number of groups and the seed. The slider of lesson 03.
 
 >>> groups()
-Slider: board, start, k, seed, step
+Slider: board, centres start at, k, seed, step
 """
 
 from __future__ import annotations
@@ -36,6 +36,12 @@ ROUNDS = 20  # of an assignment and an update each: most starts settle in half a
 COLORS = tuple(color for color in CLUSTER_COLORS if color != BLACK)
 SIGNS = ("dot", "cross", "diamond", "triangle", "triangle down")
 LARGE = 8  # signs on each group are larger, so that it can be told from the others without colour
+LEGEND = (
+    ("start", INK, "ring"),
+    ("centre now", INK, "square"),
+    ("its way", INK, "line"),
+    ("border", GREY, "dashed"),
+)
 
 
 @cache
@@ -77,14 +83,7 @@ def draw_groups(board: str, start: str, k: int, seed: int, step: int) -> str:
         *(frame.polyline(way[: step // 2 + 1, j], INK, 1.5) for j in range(k) if step > 1),
         frame.points(way[0], "white", size=11) + frame.points(way[0], INK, "ring", 9),
         frame.points(centers, "white", "square", 14) + frame.points(centers, INK, "square", 10),
-        frame.legend(
-            [
-                ("start", INK, "ring"),
-                ("centre now", INK, "square"),
-                ("its way", INK, "line"),
-                ("border", GREY, "dashed"),
-            ]
-        ),
+        frame.legend(LEGEND),
         title=title,
         says=says,
     )
