@@ -102,7 +102,7 @@ def show_lines(
     says: str,
     *,
     truth: Polygon | None = None,
-    center: tuple[float, float] | None = None,
+    center: ArrayLike | None = None,
     size: float = 0.36,
 ) -> Picture:
     """Return a picture of lines, each with its points; points of no line are grey.
@@ -154,7 +154,7 @@ def diagram() -> Picture:
 def _around(polygon: Polygon) -> Frame:
     """Return a square frame around a polygon, with room for a legend above it."""
     x, y = polygon.centroid
-    return square_frame((float(x), float(y) + 0.02), 0.38)
+    return square_frame((float(x), float(y) + 0.04), 0.42)
 
 
 def _across(frame: Frame, line: Line, color: str, width: float, dash: str = "") -> str:
