@@ -22,6 +22,7 @@ The rooms, each of which imports only those before it:
 ``edges.py``     lesson 04: RANSAC trial by trial, and its band
 ``arcs.py``      lesson 05: the circles that five ways see in an arc
 ``naming.py``    lesson 06: candidates, what each costs, the chosen one
+``scoring.py``   lesson 07: tolerance, weights, one-sided or two-sided
 ===============  ==================================================
 """
 
@@ -33,10 +34,11 @@ from .edges import edges
 from .groups import groups
 from .naming import naming
 from .rays import rays
+from .scoring import scoring
 from .slider import Choice, Explorer, Slider, explore
 
 # The lessons' sliders, in the order of the lessons: tests move each of them to all corners of its box.
-SLIDERS = (boards, rays, cells, groups, edges, arcs, naming)
+SLIDERS = (boards, rays, cells, groups, edges, arcs, naming, scoring)
 
 __all__ = [
     "boards",
@@ -46,6 +48,7 @@ __all__ = [
     "edges",
     "arcs",
     "naming",
+    "scoring",
     "explore",
     "Explorer",
     "Slider",

@@ -1,0 +1,216 @@
+"""Scoring: what a result scores, while you move the tolerance and the weights. The slider of lesson 07.
+
+>>> scoring()
+Slider: tolerance, weight of shape, centre's part of the rest, map, noise
+>>> one = Errors(1.0, np.array([0.001, -0.002]), np.array([-0.02]), 2, 1)
+>>> weighted(one, np.array([0.005]), (0.4, 0.3, 0.3)), weighted(one, np.array([0.005]), (0.4, 0.3, 0.3), one_sided=True)
+(array([0.7]), array([1.]))
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arguments import ROUNDING
+from ..evaluation import CENTER_WEIGHT, SHAPE_WEIGHT, evaluate
+from ..formats import paper_suite
+from ..lidar import Lidar
+from ..pipeline import PAPER, ROBUST
+from ..plots.look import BLUE, GREY, INK, PALE, SKY, VERMILION
+from ..study import Experiment, run
+from ..world import World
+from .drawing import Frame, picture, side_by_side
+from .slider import Choice, Explorer, Picture, Slider, explore
+
+Floats = NDArray[np.float64]
+Weights = tuple[float, float, float]  # of shape, centre and dimensions; their sum is 1
+
+METHODS = {"PAPER": PAPER, "ROBUST": ROBUST}
+LOOKS = {"PAPER": (VERMILION, "square"), "ROBUST": (BLUE, "dot")}
+MAPS = ("4-01", "4-03", "4-10")  # on the second and third, circles are named wrongly even without noise
+WIDEST = 20.0  # mm: the largest tolerance
+CURVE = np.linspace(0.0, WIDEST, 201)  # mm
+
+# Below the curves there is room for the weights and the legend.
+FRAME = Frame(
+    (0.0, WIDEST),
+    (-0.46, 1.05),
+    "tolerance [mm]",
+    "weighted accuracy [-]",
+    width=425,
+    height=465,
+    x_ticks=(0, 5, 10, 15, 20),
+    y_ticks=(0.0, 0.2, 0.4, 0.6, 0.8, 1.0),
+)
+BAR = (-0.055, -0.135)  # top and bottom of the bar of weights
+TIE = 1e-9
+LETTER = 6.6  # px: the width of one letter in the bar
+
+
+@dataclass(frozen=True, eq=False)
+class Errors:
+    """What a comparison with the truth leaves for scoring.
+
+    Parameters
+    ----------
+    shape : float
+        Shape accuracy: it has no tolerance.
+    center, dimension : array, shape (N,)
+        found - true of all values that can be compared, metres.
+    n_center, n_dimension : int
+        How many there are in the truth: those that are not above count as wrong.
+    """
+
+    shape: float
+    center: Floats
+    dimension: Floats
+    n_center: int
+    n_dimension: int
+
+
+@cache
+def scoring() -> Explorer:
+    """Return the slider of lesson 07: tolerance and weights; PAPER and ROBUST on three maps, with and without noise."""
+    start = CENTER_WEIGHT / (1 - SHAPE_WEIGHT)
+    return explore(
+        draw_scores,
+        Slider("tolerance", 0.0, WIDEST, 0.5, start=5.0, unit="mm"),
+        Slider("shape", 0.0, 1.0, 0.05, start=SHAPE_WEIGHT, label="weight of shape"),
+        Slider("center", 0.0, 1.0, 0.05, start=round(start, 2), label="centre's part of the rest"),
+        Choice("board", MAPS, start="4-03", label="map"),
+        Slider("noise", 0, 10, 5, start=0, unit="mm"),
+        settings={
+            "the paper's weights": {},
+            "within 1 mm": {"tolerance": 1.0, "noise": 5},
+            "only the shape counts": {"shape": 1.0, "noise": 5, "board": "4-01"},
+            "only dimensions count": {"shape": 0.0, "center": 0.0, "tolerance": 1.0, "noise": 10, "board": "4-10"},
+        },
+    )
+
+
+def draw_scores(tolerance: float, shape: float, center: float, board: str, noise: int) -> str:
+    """Draw both methods' scores against the tolerance [mm], two-sided and one-sided; noise in mm."""
+    weights = (shape, (1 - shape) * center, (1 - shape) * (1 - center))
+    results = {name: errors_of(name, board, noise) for name in METHODS}
+    here = np.array([tolerance]) / 1000
+    fair, lax = (
+        {name: float(weighted(result, here, weights, one_sided=one)[0]) for name, result in results.items()}
+        for one in (False, True)
+    )
+    parts = []
+    for name, result in results.items():
+        color, marker = LOOKS[name]
+        curves = [weighted(result, CURVE / 1000, weights, one_sided=one) for one in (True, False)]
+        parts += [
+            FRAME.polyline(np.column_stack([CURVE, curves[0]]), color, 1.5, "5 3"),
+            FRAME.polyline(np.column_stack([CURVE, curves[1]]), color, 2.5),
+            FRAME.points([(tolerance, fair[name])], color, marker, 11),
+            FRAME.points([(tolerance, lax[name])], color, "ring", 11),
+        ]
+    return picture(
+        FRAME,
+        FRAME.segments([(0, 0), (0, 1)], [(WIDEST, 0), (WIDEST, 1)], PALE),
+        FRAME.segments([(tolerance, 0)], [(tolerance, 1.05)], GREY, 1.5, "2 3"),
+        *parts,
+        _bar_of(weights),
+        FRAME.legend(
+            [
+                ("ROBUST, two-sided", BLUE, "dot"),
+                ("PAPER, two-sided", VERMILION, "square"),
+                ("dashed: one-sided, too small is right", INK, "ring"),
+            ],
+            corner="bottom left",
+        ),
+        title=f"Within {tolerance:g} mm: ROBUST {_two(fair['ROBUST'])}, PAPER {_two(fair['PAPER'])}",
+        says=f"Map {board}, noise {noise} mm, right within {tolerance:g} mm: ROBUST scores {_two(fair['ROBUST'])}, "
+        f"PAPER {_two(fair['PAPER'])}; if what is too small is right, {_two(lax['ROBUST'])} and {_two(lax['PAPER'])}. "
+        f"Weights: shape {weights[0]:.2f}, centre {weights[1]:.2f}, dimensions {weights[2]:.2f}.",
+    )
+
+
+@cache
+def errors_of(method: str, board: str, noise: int) -> Errors:
+    """Return what a method's result on a map of the suite is off by; noise in mm. Found once, then kept."""
+    world = _suite()[board]
+    experiment = Experiment(board, world, method, METHODS[method], lidar=Lidar(noise_std=noise / 1000))
+    report = evaluate(run(experiment).found, world)
+    return Errors(
+        shape=report.shape_accuracy,
+        center=np.array([e for m in report.matches for e in m.center_error]),
+        dimension=np.array([e for m in report.matches for e in m.dimension_error or ()]),
+        n_center=2 * len(world.shapes),
+        n_dimension=sum(len(s.dimensions) for s in world.shapes),
+    )
+
+
+def weighted(errors: Errors, tolerance: Floats, weights: Weights, *, one_sided: bool = False) -> Floats:
+    """Return the weighted accuracy at each tolerance, shape (N,), metres.
+
+    ``one_sided``: every value that is too small counts as right, as in the published scoring (which rounds as well).
+    """
+
+    def share(off: Floats, n: int) -> Floats:
+        off = off if one_sided else np.abs(off)
+        return (off <= tolerance[:, None] + ROUNDING).sum(axis=1) / n
+
+    center, dimension = share(errors.center, errors.n_center), share(errors.dimension, errors.n_dimension)
+    return weights[0] * errors.shape + weights[1] * center + weights[2] * dimension
+
+
+@cache
+def _suite() -> dict[str, World]:
+    return paper_suite()
+
+
+def _two(score: float) -> str:
+    """Return a score with two digits; 0.825 is lifted over the edge, where rounding could go either way."""
+    return f"{score + TIE:.2f}"
+
+
+def _bar_of(weights: Weights) -> str:
+    """Draw the weights as parts of one bar, each with its name where there is room for it."""
+    top, bottom = BAR
+    ends = WIDEST * np.cumsum([0.0, *weights])
+    parts = []
+    looks = zip(("shape", "centre", "dimensions"), weights, (GREY, SKY, PALE), strict=True)
+    for left, right, (name, weight, color) in zip(ends[:-1], ends[1:], looks, strict=True):
+        room = (right - left) * FRAME.scale[0]
+        words = next((w for w in (f"{name} {weight:.2f}", f"{weight:.2f}") if LETTER * len(w) < room), "")
+        corners = [(left, top), (right, top), (right, bottom), (left, bottom)]
+        parts.append(FRAME.area(corners, color, 0.45) if weight else "")
+        parts.append(FRAME.text(((left + right) / 2, bottom), words, INK, "middle", (0, -7), 11) if words else "")
+    return "".join(parts)
+
+
+def diagram() -> Picture:
+    """Return the drawing behind one-to-one matching: in list order the first found shape takes another's place."""
+    panels = [
+        _pairing([(0, 1)], "First come: 1 match, 1 miss", "found 2 to true A: 87 mm, beyond the gate of 70 mm"),
+        _pairing([(0, 0), (1, 1)], "All together: both matched", "43 mm + 32 mm = 75 mm, the least for two pairs"),
+    ]
+    captions = ["list order: 1 takes its nearest", "one-to-one, least in all"]
+    return Picture(side_by_side(panels, captions), "Diagram: one-to-one matching, in list order and all together")
+
+
+TRUE, FOUND = np.array([(0.0, 0.03), (0.06, 0.03)]), np.array([(0.035, 0.005), (0.085, 0.01)])  # m: the diagram's
+
+
+def _pairing(pairs: list[tuple[int, int]], title: str, note: str) -> str:
+    """Draw the centres of two true and two found shapes, and which found one stands for which true one."""
+    frame = Frame((-0.03, 0.13), (-0.035, 0.055), width=425, height=272)
+    starts, ends = [FOUND[f] for f, _ in pairs], [TRUE[t] for _, t in pairs]
+    parts = [frame.segments(starts, ends, BLUE, 3)]
+    if len(pairs) == 1:
+        parts.append(frame.segments([FOUND[1]], [TRUE[0]], VERMILION, 1.5, "4 4"))
+    for start, end in zip(starts, ends, strict=True):
+        apart = 1000 * float(np.hypot(*(start - end)))
+        parts.append(frame.text((start + end) / 2, f"{apart:.0f} mm", BLUE, shift=(9, 0)))
+    parts += [frame.points(TRUE, INK, "square", 12), frame.points(FOUND, VERMILION, "cross", 12)]
+    parts += [frame.text(p, f"true {name}", INK, "middle", (0, -12)) for p, name in zip(TRUE, "AB", strict=True)]
+    parts += [frame.text(p, f"found {n}", VERMILION, "middle", (0, 22)) for n, p in enumerate(FOUND, start=1)]
+    parts.append(frame.text((0.05, -0.029), note, INK, "middle"))
+    return picture(frame, *parts, title=title, says=f"{len(pairs)} of 2 true shapes matched; {note}.")
