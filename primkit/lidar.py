@@ -32,6 +32,8 @@ from .world import World
 
 Floats = NDArray[np.float64]
 
+BLOCK = 10_000  # scans that are worked on at a time: 8 MB of ranges
+
 
 @dataclass(frozen=True)
 class Lidar:
@@ -193,7 +195,7 @@ def scan_blocks(
     poses: ArrayLike,
     lidar: Lidar | None = None,
     *,
-    size: int = 10_000,
+    size: int = BLOCK,
     rng: int | np.random.Generator | None = None,
 ) -> Iterator[Scans]:
     """Scan the world once from each pose, and hand out the scans block by block.
@@ -233,7 +235,7 @@ def _scanned(
     check_type(world, World, f"world must be a World, as in {call}")
     lidar = Lidar() if lidar is None else lidar
     check_type(lidar, Lidar, "lidar must be a Lidar, such as Lidar()")
-    faults = _Faults(lidar, len(poses), size, rng)
+    faults = _Faults(lidar, len(poses), min(size, BLOCK), rng)
     starts = range(0, max(1, len(poses)), size)
     return (_block(world, poses[start : start + size], lidar, faults) for start in starts)
 
@@ -241,25 +243,26 @@ def _scanned(
 def _block(world: World, poses: Floats, lidar: Lidar, faults: _Faults) -> Scans:
     angles = lidar.angles
     ranges, inside = cast(world, poses, angles, lidar.range_max, lidar.range_min)
-    faults.disturb(ranges)
+    for start in range(0, len(poses), BLOCK):
+        faults.disturb(ranges[start : start + BLOCK])
     ranges[inside] = np.inf
     return Scans(poses, angles, ranges, inside)
 
 
 class _Faults:
-    """The sensor's faults, each with a stream of numbers of its own, for block after block of scans."""
+    """The sensor's faults, each with a stream of numbers of its own, for a few scans after the other."""
 
-    def __init__(self, lidar: Lidar, n_scans: int, size: int, rng: int | np.random.Generator | None) -> None:
+    def __init__(self, lidar: Lidar, n_scans: int, few: int, rng: int | np.random.Generator | None) -> None:
         self.lidar = lidar
         if rng is None and not (lidar.noise_std or lidar.dropout or lidar.spurious):
             return  # nothing is random: seeding takes longer than a scan
         self.noise, self.losses, self.ghosts = as_rng(rng).spawn(3)
         # Of the ghosts' stream, the first numbers say for each beam whether there is one, the rest where.
         self.places = self.ghosts
-        if lidar.spurious > 0 and n_scans > size:
+        if lidar.spurious > 0 and n_scans > few:
             self.places = deepcopy(self.ghosts)
-            for start in range(0, n_scans, size):
-                self.places.random((min(size, n_scans - start), lidar.beams))
+            for start in range(0, n_scans, few):
+                self.places.random((min(few, n_scans - start), lidar.beams))
 
     def disturb(self, ranges: Floats) -> None:
         """Add the faults to exact ranges, in place; they are those of the next scans."""

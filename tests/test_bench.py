@@ -96,6 +96,16 @@ def test_a_result_as_a_table():
     assert str(RESULT) == TABLE
 
 
+def test_a_table_without_ratios_has_no_column_for_them():
+    alone = replace(RESULT, rows=RESULT.rows[:1], notes=())
+    assert str(alone).splitlines()[2:] == [
+        "       us (from-to)  hits",
+        "-----  ------------  ----",
+        "one",
+        " ours  1.23 (1-2)    12",
+    ]
+
+
 def test_a_result_as_csv():
     header, *rows = csv.reader(io.StringIO(results_as_csv([RESULT])))
     assert tuple(header) == CSV_HEADER
@@ -173,7 +183,7 @@ def test_a_tiled_board_keeps_the_density():
 @pytest.mark.parametrize(
     ("bench", "absent"),
     [
-        (scanning.bench_scan, 5),
+        (scanning.bench_scan, 4),
         (finding.bench_shapes, 1),
         (finding.bench_kernels, 7),
         (driving.bench_live, 0),
@@ -193,7 +203,7 @@ def test_sizes_give_a_curve_for_each_tool_that_is_there():
     assert list(curves) == ["primkit", "shapely (GEOS)"]
     assert all(sizes == [4, 8] and min(costs) > 0 for sizes, costs in curves.values())
     assert [row.size for row in result.rows if row.tool.endswith("shapes")] == [4, 8, 4, 8]
-    assert sum(row.cost is None for row in result.rows) == 4
+    assert sum(row.cost is None for row in result.rows) == 3
 
 
 def test_poses_on_a_tiled_board_lie_outside_its_shapes_on_every_map():
@@ -229,18 +239,22 @@ def test_imports_are_compared_with_numpy_and_shapely():
 
 
 def test_memory_of_many_scans_counts_their_ranges():
-    result = processes.bench_memory(replace(TINY, many=30_000), 0)
-    at_once, in_blocks = result.rows
+    result = processes.bench_memory(replace(TINY, many=60_000), 0)
+    in_blocks, at_once = result.rows
     if at_once.cost is None:
         pytest.skip("this system does not tell the peak of memory")
-    assert at_once.cost.median - at_once.facts["before [MB]"] > 20  # 24 MB of ranges
-    assert in_blocks.cost.median < 400
+    assert at_once.cost.median - at_once.facts["before [MB]"] > 40  # 48 MB of ranges
+    assert in_blocks.cost.median - in_blocks.facts["before [MB]"] < 0.5 * (
+        at_once.cost.median - at_once.facts["before [MB]"]
+    )
 
 
 def test_study_finds_the_same_on_two_processes():
     one, two = processes.bench_study(TINY, 0).rows
     assert one.ratio is None
     assert two.facts["same rows"] == "yes"
+    if "MB at the end" in one.facts:
+        assert 50 < one.facts["MB after a tenth"] <= one.facts["MB at the end"]
 
 
 # --- the command --------------------------------------------------------------------------------------------

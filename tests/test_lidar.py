@@ -1060,6 +1060,18 @@ def test_blocks_together_are_the_scans_to_the_last_bit(faults, size, ring):
     assert all(np.array_equal(block.angles, whole.angles) for block in blocks)
 
 
+@pytest.mark.parametrize("size", [1999, 2000])
+def test_many_scans_are_disturbed_a_few_at_a_time(size, ring, monkeypatch):
+    """Of a million scans, a table of noise beside that of ranges would double the memory."""
+    world, poses, _ = ring
+    lidar = Lidar(**FAULTS["all"])
+    whole = scan(world, poses, lidar, rng=11).ranges
+    monkeypatch.setattr(lidar_module, "BLOCK", 300)
+    blocks = scan_blocks(world, poses, lidar, size=size, rng=11)
+    assert np.concatenate([block.ranges for block in blocks]).tobytes() == whole.tobytes()
+    assert scan(world, poses, lidar, rng=11).ranges.tobytes() == whole.tobytes()
+
+
 @pytest.mark.parametrize("bits", [np.random.MT19937, np.random.Philox, np.random.SFC64])
 def test_blocks_from_any_generator_which_goes_on_as_after_a_scan(bits, ring):
     world, poses, _ = ring

@@ -78,7 +78,8 @@ def bench_live(effort: Effort, seed: int) -> Result:
         "times as fast as without memory",
         tuple(rows),
         (
-            f"Medians over the steps, with the least and the greatest; p95 is the 95th percentile. {len(steps)} maps.",
+            f"Medians (p50) over the steps, with the least and the greatest; p95 is the 95th percentile. {len(steps)} "
+            "maps.",
             '"with memory": find_shapes(..., memory=...) measures only the groups that the scan has changed; both find '
             "the same. find_shapes includes grid.points().",
         ),

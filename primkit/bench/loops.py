@@ -4,8 +4,8 @@ In:  poses, shape (P, 3); the beams' cosines and sines, shape (B,); sides, shape
      next one; circles, shape (C, 3): centre and radius; the sensor's limits.
 Out: ranges, shape (P, B), written into ``out``: exact, infinity where a beam meets nothing within the limits.
 
-Three ways to write the same loop, because a compiler makes very different things of them: as one would, with
-little to compute in the middle, and with the beams in the middle, which a processor takes several at a time.
+Two ways to write the same loop, because a compiler makes very different things of them: as one would, and with the
+beams in the middle and no branch there, so that a processor takes several at a time.
 
 They are plain Python and run without numba too, slowly:
 
@@ -58,34 +58,6 @@ def plain(
             out[p, b] = best if least <= best <= most else math.inf
 
 
-def without_division(
-    poses: Floats, cos: Floats, sin: Floats, sides: Floats, circles: Floats, least: float, most: float, out: Floats
-) -> None:
-    """Do the same, but divide only for a hit that is nearer than those before."""
-    for p in range(len(poses)):
-        x, y, heading = poses[p]
-        turn_x, turn_y = math.cos(heading), math.sin(heading)
-        for b in range(len(cos)):
-            ux, uy = turn_x * cos[b] - turn_y * sin[b], turn_y * cos[b] + turn_x * sin[b]
-            best = math.inf
-            for k in range(len(sides)):
-                ax, ay, dx, dy = sides[k, 0] - x, sides[k, 1] - y, sides[k, 2], sides[k, 3]
-                across, s, t = ux * dy - uy * dx, ax * uy - ay * ux, ax * dy - ay * dx
-                if across < 0.0:
-                    across, s, t = -across, -s, -t
-                if 0.0 <= s <= across and 0.0 <= t < best * across:
-                    best = t / across
-            for k in range(len(circles)):
-                cx, cy, r = circles[k, 0] - x, circles[k, 1] - y, circles[k, 2]
-                aside = ux * cy - uy * cx
-                square = r * r - aside * aside
-                if square >= 0.0:
-                    t = ux * cx + uy * cy - math.sqrt(square)
-                    if 0.0 <= t < best:
-                        best = t
-            out[p, b] = best if least <= best <= most else math.inf
-
-
 def beams_inside(
     poses: Floats, cos: Floats, sin: Floats, sides: Floats, circles: Floats, least: float, most: float, out: Floats
 ) -> None:
@@ -120,6 +92,5 @@ def beams_inside(
 
 LOOPS = {
     "numba, plain loop": plain,
-    "numba, without division": without_division,
     "numba, beams innermost": beams_inside,
 }

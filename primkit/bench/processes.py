@@ -22,7 +22,6 @@ from .results import Fact, Result, Row
 from .scanning import SHAPES
 
 STUDY_PROCESSES = 2
-BLOCK = 10_000  # scans that are kept at a time
 MEGA = 1e6
 
 # --- the start ----------------------------------------------------------------------------------------------
@@ -97,49 +96,76 @@ from time import perf_counter
 import numpy as np
 import primkit as pk
 
-n, step, seed = map(int, sys.argv[1:])
-world = pk.paper_suite()["4-01"]
+n, seed, streamed = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3] == STREAMED
+world, lidar = pk.paper_suite()["4-01"], pk.Lidar(noise_std=0.002)
 rng = np.random.default_rng(seed)
 poses = np.column_stack([rng.uniform(-0.5, 0.5, (n, 2)), rng.uniform(-np.pi, np.pi, n)])
 grid = pk.Grid()
-pk.scan(world, poses[:1])
+grid.add(pk.scan(world, poses[:1]))
 before, begun = peak(), perf_counter()
-for start in range(0, n, step):
-    scans = pk.scan(world, poses[start : start + step])
-    if step < n:
+if streamed:
+    for scans in pk.scan_blocks(world, poses, lidar, rng=seed):
         grid.add(scans)
-print(before, peak(), perf_counter() - begun, len(grid))
+else:
+    pk.scan(world, poses, lidar, rng=seed)
+print(before, peak(), perf_counter() - begun)
 """
 )
+STREAMED = "scan_blocks, each added to a grid"
+AT_ONCE = "scan, all in one call"
 
 
 def bench_memory(effort: Effort, seed: int) -> Result:
     """Measure the peak of memory of very many scans, all at once and block by block."""
     rows = []
-    ways = {"scan, all in one call": effort.many, f"scan and grid.add, {BLOCK:,} at a time": BLOCK}
-    for name, step in ways.items():
-        before, peak, time, _ = map(float, _fresh(MANY, str(effort.many), str(step), str(seed)).split())
+    for name in (STREAMED, AT_ONCE):
+        printed = _fresh(f"STREAMED = {STREAMED!r}{MANY}", str(effort.many), str(seed), name)
+        before, peak, time = map(float, printed.split())
         facts: dict[str, Fact] = {"before [MB]": before / MEGA, "us per scan": MEGA * time / effort.many}
         rows.append(Row(f"{effort.many:,} poses", name, Spread.of([peak / MEGA]) if peak else None, facts=facts))
     table = 8 * 100 * effort.many / MEGA
     return Result(
         "memory",
-        "The peak of memory: very many scans of a map with 4 shapes, in a fresh process",
+        "The peak of memory: very many noisy scans of a map with 4 shapes, each in a fresh process",
         "MB at the peak",
         "",
         tuple(rows),
         (
             f'"before": with the libraries loaded and the poses drawn. The ranges of {effort.many:,} scans take '
-            f"{table:,.0f} MB by themselves: all in one call can never take less.",
+            f"{table:,.0f} MB by themselves: all in one call can never take less. Blocks are of 10,000 scans.",
         ),
     )
 
 
 # --- a study ------------------------------------------------------------------------------------------------
 
+# Maps are drawn as they are needed: the first tenth of a long study has nearly all that memory ever holds.
+LONG = (
+    PEAK
+    + """
+import sys
+import numpy as np
+from primkit.pipeline import ROBUST
+from primkit.study import run_study
+from primkit.world import random_world
+
+n, shapes, seed = map(int, sys.argv[1:])
+peaks = []
+
+def maps():
+    for number in range(n):
+        if number == max(1, n // 10):
+            peaks.append(peak())
+        yield random_world(shapes, rng=np.random.default_rng([seed, number]))
+
+run_study(maps(), {"ROBUST": ROBUST}, seed=seed, jobs=1, progress=False)
+print(*peaks, peak())
+"""
+)
+
 
 def bench_study(effort: Effort, seed: int) -> Result:
-    """Time a study of many maps on one process and on two."""
+    """Time a study of many maps on one process and on two, and measure how its memory grows."""
     maps = {
         str(number): random_world(SHAPES, rng=np.random.default_rng([seed, number])) for number in range(effort.worlds)
     }
@@ -153,10 +179,12 @@ def bench_study(effort: Effort, seed: int) -> Result:
     taken = in_turns(tools, rounds=max(2, effort.rounds // 3))
     one, two = taken.values()
     case, same = f"{effort.worlds:,} maps with {SHAPES} shapes", "yes" if found[1] == found[STUDY_PROCESSES] else "no"
-    rate = [{"maps a second": effort.worlds / float(np.median(each))} for each in (one, two)]
+    rates: list[dict[str, Fact]] = [{"maps a second": effort.worlds / float(np.median(each))} for each in (one, two)]
+    early, late = map(float, _fresh(LONG, str(effort.worlds), str(SHAPES), str(seed)).split())
+    memory: dict[str, Fact] = {"MB after a tenth": early / MEGA, "MB at the end": late / MEGA} if late else {}
     rows = (
-        Row(case, names[1], Spread.of(one), facts=rate[0]),
-        Row(case, names[STUDY_PROCESSES], Spread.of(two), Spread.of(one / two), facts={**rate[1], "same rows": same}),
+        Row(case, names[1], Spread.of(one), facts=rates[0] | memory),
+        Row(case, names[STUDY_PROCESSES], Spread.of(two), Spread.of(one / two), facts=rates[1] | {"same rows": same}),
     )
     return Result(
         "study",
@@ -167,5 +195,6 @@ def bench_study(effort: Effort, seed: int) -> Result:
         (
             f"Medians of {len(one)} rounds in turns, after one for warming up, with the least and the greatest. Each "
             "process has one thread. Two processes can be twice as fast only where two cores are free.",
+            '"MB": the peak of memory of one process, in one more run, from a fresh start.',
         ),
     )

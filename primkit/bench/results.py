@@ -91,9 +91,11 @@ class Result:
 
     def __str__(self) -> str:
         facts = list(dict.fromkeys(name for row in self.rows for name in row.facts))
-        header = ("", f"{self.unit} (from-to)", f"{self.ratio_to} (from-to)", *facts)
+        paired = [f"{self.ratio_to} (from-to)"] if any(row.ratio for row in self.rows) else []
+        header = ("", f"{self.unit} (from-to)", *paired, *facts)
         body: list[tuple[str, list[tuple[str, ...]]]] = [
-            (case, [_cells(row, facts) for row in rows]) for case, rows in groupby(self.rows, key=lambda row: row.case)
+            (case, [_cells(row, facts, paired=bool(paired)) for row in rows])
+            for case, rows in groupby(self.rows, key=lambda row: row.case)
         ]
         every = [header, *(cells for _, rows in body for cells in rows)]
         widths = [max(len(cells[i]) for cells in every) for i in range(len(header))]
@@ -121,10 +123,11 @@ def results_as_csv(results: Iterable[Result]) -> str:
     return as_csv(CSV_HEADER, [row for result in results for row in result.csv_rows()])
 
 
-def _cells(row: Row, facts: Iterable[str]) -> tuple[str, ...]:
+def _cells(row: Row, facts: Iterable[str], *, paired: bool) -> tuple[str, ...]:
     told = (_short(row.facts[name]) if name in row.facts else "" for name in facts)
     cost = ABSENT if row.cost is None else _spread(row.cost)
-    return (f" {row.tool}", cost, "" if row.ratio is None else _spread(row.ratio), *told)
+    ratio = ["" if row.ratio is None else _spread(row.ratio)] * paired
+    return (f" {row.tool}", cost, *ratio, *told)
 
 
 def _spread(spread: Spread) -> str:
