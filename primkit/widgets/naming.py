@@ -54,7 +54,7 @@ LEAST_TURN, MOST_TURN, LEAST_SIDE = np.radians(2), np.radians(175), 0.003
 STEPS = 21  # an outline is drawn in so many steps a side; every other one where it was not seen
 HARDLY = 0.4  # a side of which less than this share has points near it was hardly seen
 
-BARS = Frame((-0.2, 0.2), (-0.275, 0.14), width=425, height=438, y_ticks=(-0.1, 0.0, 0.1))
+BARS = Frame((-0.2, 0.2), (-0.26, 0.14), width=425, height=425, y_ticks=(-0.1, 0.0, 0.1))
 TOP_BAR, ROW, BAR = -0.178, 0.021, (-0.105, 0.115)  # m in that frame: the first bar, one row, from left to right
 LONGEST = 2.5  # times the least cost: longer bars are cut off
 
