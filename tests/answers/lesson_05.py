@@ -138,6 +138,10 @@ ANSWERS = {
         },
         "wrong": {
             "no circle": (fit_any, "Where the points fix none, return None"),
+            "no circle on a line": (
+                lambda points: fit_any(points) if len(points) > 2 else None,
+                "Where the points fix none, return None",
+            ),
             "mean": (fit_by_mean, "only when they lie all around it"),
             "root of k": (fit_with(lambda a, b, k: (a, b, np.sqrt(k))), "it is not r² yet"),
             "squared": (fit_with(lambda a, b, k: (a, b, k + a * a + b * b)), "is a root missing?"),
