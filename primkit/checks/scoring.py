@@ -1,0 +1,307 @@
+"""Scoring: which found shape stands for which true one, and the weighted accuracy; the checks of lesson 07.
+
+In:  the student's ``match_shapes(found, true, gate)`` and ``weighted_accuracy(found, true, pairs, tolerance)``.
+Out: answers. Pairs may come in any order; where two pairings are equally short, either is right.
+
+>>> match_shapes(lambda found, true, gate: ...)
+○ not attempted: match_shapes still returns `...`.
+>>> match_shapes.reference(np.array([[0.06, 0.0], [0.01, 0.0]]), np.zeros((1, 2)), 0.1)
+[(1, 0)]
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arguments import ROUNDING
+from ..evaluation import CENTER_WEIGHT, DIMENSION_WEIGHT, SHAPE_WEIGHT, match
+from ..shapes import Circle, Polygon, Shape
+from ..world import random_world
+from .answer import Check, Fault
+from .judges import CLOSE, number, shown
+
+Floats = NDArray[np.float64]
+Pairs = list[tuple[int, int]]
+
+RANDOM_CASES = 120
+EDGE = 1e-6  # m: cases in which rounding alone decides are left out
+GATE, TOLERANCE = 0.1, 0.005  # m
+ANY = 10.0  # m: a gate that lets everything through
+EACH: tuple[float, float, float] = (SHAPE_WEIGHT, CENTER_WEIGHT, DIMENSION_WEIGHT)
+
+
+# --- one-to-one pairs -------------------------------------------------------------------------------------------
+
+
+def best_pairs(found: Floats, true: Floats, gate: float) -> Pairs:
+    """Return pairs (index found, index true): as many as the gate allows, then with the least total distance.
+
+    ``found`` and ``true`` are centres, shape (F, 2) and (T, 2), metres.
+    """
+    ours, theirs = ([Circle(center, 1.0) for center in centers] for centers in (found, true))
+    return match(ours, theirs, gate)
+
+
+def _distances(found: Floats, true: Floats) -> Floats:
+    offset = found.reshape(-1, 1, 2) - true.reshape(1, -1, 2)
+    return np.hypot(offset[..., 0], offset[..., 1])
+
+
+def _match_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+    """Yield plain situations, then crowded random ones."""
+    a, b, c = (0.0, 0.0), (0.2, 0.0), (0.0, 0.2)
+    yield np.array([b, a]), np.array([a, b]), GATE  # in another order
+    yield np.array([(0.03, 0.0), (0.1, 0.0)]), np.array([(0.0, 0.0), (0.05, 0.0)]), GATE  # the first may not choose
+    yield np.array([(0.01, 0.0), (0.0, 0.02)]), np.array([a, b]), GATE  # two for the same
+    yield np.array([a, b, c]), np.array([a]), GATE
+    yield np.array([(0.3, 0.0)]), np.array([a]), GATE
+    yield np.empty((0, 2)), np.array([a, b]), GATE
+    yield np.array([a, b]), np.empty((0, 2)), GATE
+    n = 0
+    while n < RANDOM_CASES:
+        true = rng.uniform(-0.12, 0.12, (rng.integers(1, 5), 2))
+        found = np.vstack([true + rng.normal(0, 0.04, true.shape), rng.uniform(-0.2, 0.2, (2, 2))])
+        found = rng.permutation(found)[: rng.integers(1, 6)]
+        gate = float(rng.choice([0.05, GATE]))
+        if np.abs(_distances(found, true) - gate).min() > EDGE:
+            n += 1
+            yield found, true, gate
+
+
+def _judge_pairs(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
+    """Judge a pairing by what it is for: one-to-one, within the gate, as many as possible, least in all."""
+    pairs = _as_pairs(got)
+    if pairs is None:
+        missing = " (is there a return?)" if got is None else ""
+        return f"got {shown(got)}, expected a list of pairs (index found, index true){missing}"
+    if sorted(pairs) == sorted(expected):
+        return None
+    found, true, gate = args
+    for place, name, n in ((0, "found", len(found)), (1, "true", len(true))):
+        used = [pair[place] for pair in pairs]
+        if any(not 0 <= index < n for index in used):
+            return f"got {shown(pairs)}, but there are {n} {name} shapes, counted from 0"
+        if len(set(used)) < len(used):
+            return f"got {shown(pairs)}: a {name} shape stands in two pairs"
+    apart = [float(_distances(found, true)[pair]) for pair in pairs]
+    if max(apart, default=0.0) > gate:
+        return f"got {shown(pairs)}: a pair is {shown(max(apart))} m apart, and the gate is {shown(gate)} m"
+    if len(pairs) != len(expected):
+        return f"got {len(pairs)} pairs, {len(expected)} are possible"
+    least = sum(float(_distances(found, true)[pair]) for pair in expected)
+    if sum(apart) <= least + CLOSE:
+        return None
+    return f"got {shown(pairs)}, {shown(sum(apart))} m in all; {shown(expected)} is {shown(least)} m"
+
+
+def _as_pairs(got: Any) -> Pairs | None:
+    """Return pairs of whole numbers; None for anything else."""
+    if isinstance(got, (str, dict)) or not isinstance(got, Iterable):
+        return None
+    try:
+        pairs = [tuple(pair) for pair in got]
+    except TypeError:
+        return None
+    whole = all(len(pair) == 2 and all(isinstance(i, (int, np.integer)) for i in pair) for pair in pairs)
+    return [(int(pair[0]), int(pair[1])) for pair in pairs] if whole else None
+
+
+def _nearest(found: Floats, true: Floats, gate: float, *, of: str) -> Pairs:
+    """Pair each found shape with its nearest true one, or each true one with its nearest found one, used or not."""
+    apart = _distances(found, true)
+    if not apart.size:
+        return []
+    if of == "found":
+        pairs = [(f, int(t)) for f, t in enumerate(apart.argmin(axis=1))]
+    else:
+        pairs = [(int(f), t) for t, f in enumerate(apart.argmin(axis=0))]
+    return [pair for pair in pairs if apart[pair] <= gate]
+
+
+def _greedy(found: Floats, true: Floats, gate: float, *, order: str) -> Pairs:
+    """Make pairs one after the other: in the order of a list, or always the closest that is left."""
+    apart = _distances(found, true)
+
+    def rank(pair: tuple[int, int]) -> tuple[float, float]:
+        first = {"found": pair[0], "true": pair[1], "closest": 0}[order]
+        return first, float(apart[pair])
+
+    pairs: Pairs = []
+    for f, t in sorted(((f, t) for f, t in np.ndindex(*apart.shape) if apart[f, t] <= gate), key=rank):
+        if all(f != a and t != b for a, b in pairs):
+            pairs.append((f, t))
+    return pairs
+
+
+def _gate_afterwards(found: Floats, true: Floats, gate: float) -> Pairs:
+    apart = _distances(found, true)
+    return [pair for pair in best_pairs(found, true, ANY) if apart[pair] <= gate]
+
+
+match_shapes = Check(
+    "match_shapes",
+    best_pairs,
+    _match_cases,
+    _judge_pairs,
+    (
+        Fault(
+            "Each pair should be (index found, index true), not the other way round.",
+            like=lambda found, true, gate: [(t, f) for f, t in best_pairs(found, true, gate)],
+        ),
+        Fault("Pairs are made beyond the gate too.", like=lambda found, true, _gate: best_pairs(found, true, ANY)),
+        Fault(
+            "The gate comes too late: a pair that it forbids has taken shapes that others could use.",
+            like=_gate_afterwards,
+        ),
+        Fault(
+            "Each takes its nearest, used or not: is a shape free once it stands in a pair?",
+            like=partial(_nearest, of="found"),
+        ),
+        Fault(
+            "Each takes its nearest, used or not: is a shape free once it stands in a pair?",
+            like=partial(_nearest, of="true"),
+        ),
+        Fault(
+            "First come, first served: the order of a list must not decide who gets which.",
+            like=partial(_greedy, order="found"),
+        ),
+        Fault(
+            "First come, first served: the order of a list must not decide who gets which.",
+            like=partial(_greedy, order="true"),
+        ),
+        Fault(
+            "The closest pair first is greedy too: it can leave others far apart, or without a partner.",
+            like=partial(_greedy, order="closest"),
+        ),
+    ),
+)
+
+
+# --- the score --------------------------------------------------------------------------------------------------
+
+
+def score(found: Sequence[Shape], true: Sequence[Shape], pairs: Pairs, tolerance: float) -> float:
+    """Return the weighted accuracy, 0 to 1, of found shapes with their pairs (index found, index true).
+
+    ``tolerance`` in metres; ``true`` holds one shape at least.
+    """
+    return _scored(found, true, pairs, tolerance)
+
+
+def _scored(
+    found: Sequence[Shape],
+    true: Sequence[Shape],
+    pairs: Pairs,
+    tolerance: float,
+    *,
+    weights: tuple[float, float, float] = EACH,
+    absolute: bool = True,
+    shift: bool = True,
+    misses: bool = True,
+    alarms: bool = True,
+    together: bool = False,
+) -> float:
+    """Score; each option that is not at its default is a usual fault."""
+
+    def right(errors: Iterable[float]) -> int:
+        return sum((abs(e) if absolute else e) <= tolerance + ROUNDING for e in errors)
+
+    matched = [(found[f], true[t]) for f, t in pairs]
+    counted = true if misses else [t for _, t in matched]
+    false_alarms = len(found) - len(pairs) if alarms else 0
+    center = [f.centroid - t.centroid for f, t in matched]
+    n_center = sum(float(np.hypot(*e)) <= tolerance for e in center) if together else sum(map(right, center))
+    same_kind = [(f, t) for f, t in matched if f.kind == t.kind]
+    n_dimension = sum(right(_dimension_errors(f, t, shift=shift)) for f, t in same_kind)
+    parts = (
+        (len(same_kind), len(counted) + false_alarms),
+        (n_center, len(counted) * (1 if together else 2)),
+        (n_dimension, sum(len(t.dimensions) for t in counted)),
+    )
+    return sum(w * n / total for w, (n, total) in zip(weights, parts, strict=True) if total)
+
+
+def _dimension_errors(found: Shape, true: Shape, *, shift: bool = True) -> list[float]:
+    """Return found - true, metres; of three sides and more under the best cyclic shift."""
+    ours, theirs = np.array(found.dimensions), np.array(true.dimensions)
+    shifts = range(len(theirs)) if shift and len(theirs) >= 3 else [0]
+    return min(((np.roll(ours, n) - theirs) for n in shifts), key=lambda e: float(np.abs(e).sum())).tolist()
+
+
+def _score_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+    """Yield circles that are right, large, small, missed or too many, then random boards with errors of all sorts."""
+    a, b = Circle((0.0, 0.0), 0.06), Circle((0.2, 0.0), 0.08)
+    yield [a, b], [a, b], [(0, 0), (1, 1)], TOLERANCE
+    yield [Circle((-0.02, 0.001), 0.04)], [a], [(0, 0)], TOLERANCE  # too small
+    yield [a], [a, b], [(0, 0)], TOLERANCE  # one missed
+    yield [b, a], [a], [(1, 0)], TOLERANCE  # one false alarm
+    yield [], [a, b], [], TOLERANCE
+    n = 0
+    while n < RANDOM_CASES:
+        true = list(random_world(int(rng.integers(1, 5)), rng=rng).shapes)
+        found = [_near(shape, rng) for shape in true if rng.random() < 0.85]
+        found = [found[i] for i in rng.permutation(len(found))]
+        if rng.random() < 0.5:
+            found.insert(int(rng.integers(len(found) + 1)), Circle(rng.uniform(0.4, 0.5, 2), 0.05))
+        pairs = match(found, true, GATE)
+        tolerance = float(rng.choice([0.001, TOLERANCE]))
+        if _is_clear(found, true, pairs, tolerance):
+            n += 1
+            yield found, true, pairs, tolerance
+
+
+def _near(shape: Shape, rng: np.random.Generator) -> Shape:
+    """Return a shape as it could be found: moved, larger or smaller, from another corner on, or of another kind."""
+    offset, larger = rng.normal(0, 0.004, 2), float(rng.normal(1, 0.04))
+    if rng.random() < 0.15:
+        return Circle(shape.centroid + offset, 0.05)
+    if isinstance(shape, Circle):
+        return Circle(shape.center + offset, larger * shape.radius)
+    corners = np.roll(shape.vertices - shape.centroid, int(rng.integers(len(shape.vertices))), axis=0)
+    return Polygon(shape.centroid + offset + larger * corners)
+
+
+def _is_clear(found: Sequence[Shape], true: Sequence[Shape], pairs: Pairs, tolerance: float) -> bool:
+    """Tell whether no value lies on the edge between right and wrong."""
+    errors = [e for f, t in pairs for e in (*(found[f].centroid - true[t].centroid), *_dimensions(found[f], true[t]))]
+    return all(abs(abs(e) - tolerance) > EDGE for e in errors)
+
+
+def _dimensions(found: Shape, true: Shape) -> list[float]:
+    return _dimension_errors(found, true) if found.kind == true.kind else []
+
+
+def _like(**fault: Any) -> Any:
+    return partial(_scored, **fault)
+
+
+weighted_accuracy = Check(
+    "weighted_accuracy",
+    score,
+    _score_cases,
+    number(),
+    (
+        Fault("Values that are far too small count as right: is there an absolute value?", like=_like(absolute=False)),
+        Fault("False alarms cost nothing: each is one more wrong shape.", like=_like(alarms=False)),
+        Fault(
+            "Missed shapes cost nothing: divide by what is in the truth, not by what was matched.",
+            like=_like(misses=False),
+        ),
+        Fault(
+            "Neither misses nor false alarms cost anything: finding less must not score more.",
+            like=_like(misses=False, alarms=False),
+        ),
+        Fault("The three parts do not weigh the same: 0.4, 0.3 and 0.3.", like=_like(weights=(1 / 3, 1 / 3, 1 / 3))),
+        Fault(
+            "Sides are compared in the order of the lists: the first corner of one may be another's second.",
+            like=_like(shift=False),
+        ),
+        Fault("x and y of a centre count separately.", like=_like(together=True)),
+        Fault("That is in per cent: a score goes from 0 to 1.", like=_like(weights=(40.0, 30.0, 30.0))),
+    ),
+)

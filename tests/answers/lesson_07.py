@@ -1,0 +1,197 @@
+"""Lesson 07: which found shape stands for which true one, and the weighted accuracy."""
+
+# ruff: noqa: ARG001, ARG005 (a wrong answer may leave out what it is given)
+
+import itertools
+import math
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+from scipy.spatial.distance import cdist
+
+
+def by_permutations(found, true, gate):
+    """Every way to give true shapes to found ones, from the most pairs down."""
+    for n in range(min(len(found), len(true)), 0, -1):
+        ways = [
+            (sum(math.dist(found[f], true[t]) for f, t in zip(chosen, given, strict=True)), chosen, given)
+            for chosen in itertools.combinations(range(len(found)), n)
+            for given in itertools.permutations(range(len(true)), n)
+            if all(math.dist(found[f], true[t]) <= gate for f, t in zip(chosen, given, strict=True))
+        ]
+        if ways:
+            _, chosen, given = min(ways)
+            return list(zip(chosen, given, strict=True))
+    return []
+
+
+def by_recursion(found, true, gate, free=None):
+    """The first found shape gets each of the true ones in turn, or none; the rest is the same task."""
+    free = frozenset(range(len(true))) if free is None else free
+
+    def best(f, free):
+        if f == len(found):
+            return 0, 0.0, ()
+        ways = [best(f + 1, free)]
+        for t in free:
+            apart = math.dist(found[f], true[t])
+            if apart <= gate:
+                left, total, pairs = best(f + 1, free - {t})
+                ways.append((left - 1, total + apart, ((f, t), *pairs)))
+        return min(ways)
+
+    return {*best(0, free)[2]}  # a set: the order does not count
+
+
+def by_assignment(found, true, gate):
+    cost = cdist(found, true)
+    cost[cost > gate] = 1000.0
+    return np.array(
+        [(f, t) for f, t in zip(*linear_sum_assignment(cost), strict=True) if cost[f, t] <= gate], dtype=int
+    )
+
+
+def pairs_turned(found, true, gate):
+    return [(t, f) for f, t in by_permutations(found, true, gate)]
+
+
+def no_gate(found, true, gate):
+    return by_permutations(found, true, 100.0)
+
+
+def gate_last(found, true, gate):
+    return [(f, t) for f, t in no_gate(found, true, gate) if math.dist(found[f], true[t]) <= gate]
+
+
+def nearest_true(found, true, gate):
+    pairs = []
+    for f, place in enumerate(found):
+        if len(true):
+            t = min(range(len(true)), key=lambda t: math.dist(place, true[t]))
+            pairs += [(f, t)] if math.dist(place, true[t]) <= gate else []
+    return pairs
+
+
+def nearest_found(found, true, gate):
+    return [(f, t) for t, f in nearest_true(true, found, gate)]
+
+
+def first_come(found, true, gate):
+    free, pairs = set(range(len(true))), []
+    for f, place in enumerate(found):
+        near = [t for t in free if math.dist(place, true[t]) <= gate]
+        if near:
+            t = min(near, key=lambda t: math.dist(place, true[t]))
+            free.remove(t)
+            pairs.append((f, t))
+    return pairs
+
+
+def first_come_true(found, true, gate):
+    return [(f, t) for t, f in first_come(true, found, gate)]
+
+
+def closest_first(found, true, gate):
+    apart, pairs = cdist(found, true), []
+    while apart.size and apart.min() <= gate:
+        f, t = np.unravel_index(apart.argmin(), apart.shape)
+        pairs.append((f, t))
+        apart[f], apart[:, t] = np.inf, np.inf
+    return pairs
+
+
+def side_errors(found, true):
+    """The best of all turns, by the sum of absolute errors."""
+    ours, theirs = list(found.dimensions), list(true.dimensions)
+    turns = [ours[n:] + ours[:n] for n in range(len(ours))] if len(ours) > 2 else [ours]
+    return min(
+        ([a - b for a, b in zip(turn, theirs, strict=True)] for turn in turns),
+        key=lambda errors: sum(map(abs, errors)),
+    )
+
+
+def marks(
+    found, true, pairs, tolerance, *, sided=abs, sides=side_errors, missed=True, alarms=True, per=1.0, w=(4, 3, 3)
+):
+    """Give each value of the truth a mark, one after the other, by looking up its partner."""
+    partner = {t: found[f] for f, t in pairs}
+    shape, center, dimension = [0.0] * (len(found) - len(pairs) if alarms else 0), [], []
+    for t, truth in enumerate(true):
+        mine = partner.get(t)
+        if mine is None and not missed:
+            continue
+        shape.append(mine is not None and mine.kind == truth.kind)
+        center += [mine is not None and sided(mine.centroid[i] - truth.centroid[i]) <= tolerance for i in (0, 1)]
+        same = mine is not None and mine.kind == truth.kind
+        errors = sides(mine, truth) if same else [np.inf] * len(truth.dimensions)
+        dimension += [sided(e) <= tolerance for e in errors]
+    parts = [sum(part) / len(part) if part else 0.0 for part in (shape, center, dimension)]
+    return per * sum(a * b for a, b in zip(w, parts, strict=True)) / sum(w)
+
+
+def wrong(**fault):
+    return lambda found, true, pairs, tolerance: marks(found, true, pairs, tolerance, **fault)
+
+
+def in_list_order(found, true):
+    return np.subtract(found.dimensions, true.dimensions)
+
+
+def by_distance(found, true, pairs, tolerance):
+    partner = {t: found[f] for f, t in pairs}
+    away = [math.dist(partner[t].centroid, s.centroid) for t, s in enumerate(true) if t in partner]
+    others = marks(found, true, pairs, tolerance, w=(4, 0, 3)) * 0.7
+    return others + 0.3 * sum(d <= tolerance for d in away) / len(true)
+
+
+def counted(found, true, pairs, tolerance):
+    return len(pairs) / len(true)
+
+
+def by_matches(found, true, pairs, tolerance):
+    return sum(found[f].kind == true[t].kind for f, t in pairs) / len(pairs)
+
+
+ANSWERS = {
+    "match_shapes": {
+        "right": {"permutations": by_permutations, "recursion": by_recursion, "assignment": by_assignment},
+        "wrong": {
+            "turned": (pairs_turned, "not the other way round"),
+            "no gate": (no_gate, "beyond the gate too"),
+            "gate last": (gate_last, "The gate comes too late"),
+            "nearest true": (nearest_true, "used or not"),
+            "nearest found": (nearest_found, "used or not"),
+            "first come": (first_come, "First come, first served"),
+            "first come, true": (first_come_true, "First come, first served"),
+            "closest first": (closest_first, "The closest pair first is greedy too"),
+            "from one": (
+                lambda found, true, gate: [(f + 1, t + 1) for f, t in by_permutations(found, true, gate)],
+                "counted from 0",
+            ),
+            "nothing": (lambda found, true, gate: None, "is there a return?"),
+            "not even one": (lambda found, true, gate: [], "got 0 pairs, 2 are possible"),
+        },
+        "error": {
+            "an empty list": (
+                lambda found, true, gate: [(int(cdist(found, true)[:, t].argmin()), t) for t in range(len(true))],
+                "raised ValueError",
+            ),
+        },
+    },
+    "weighted_accuracy": {
+        "right": {"marks": marks},
+        "wrong": {
+            "no absolute value": (wrong(sided=float), "is there an absolute value?"),
+            "no false alarms": (wrong(alarms=False), "False alarms cost nothing"),
+            "no misses": (wrong(missed=False), "Missed shapes cost nothing"),
+            "neither": (wrong(missed=False, alarms=False), "Neither misses nor false alarms"),
+            "equal weights": (wrong(w=(1, 1, 1)), "do not weigh the same"),
+            "list order": (wrong(sides=in_list_order), "in the order of the lists"),
+            "distance": (by_distance, "x and y of a centre count separately"),
+            "per cent": (wrong(per=100.0), "in per cent"),
+            "counted": (counted, "For example weighted_accuracy("),
+            "nothing": (lambda found, true, pairs, tolerance: None, "is there a return?"),
+        },
+        "error": {"nothing found": (by_matches, "raised ZeroDivisionError")},
+    },
+}
