@@ -162,12 +162,13 @@ NOT_ITS_OWN, NOT_REFITTED, FEW = "not those within the threshold of the line", "
 def _judge_consensus(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
     """Judge a line and its inliers against the points: they must agree, be many, and be fitted."""
     points, threshold = args[0], args[1]
+    wanted = "None" if expected is None else "a line (angle, offset) and True or False for each point"
     if expected is None or got is None:
-        return None if got is expected else f"got {shown(got)}, expected {_wanted(expected)}"
+        return None if got is expected else f"got {shown(got)}, expected {wanted}"
     pair = got if isinstance(got, (tuple, list)) and len(got) == 2 else (None, None)
     own, mask = as_line(pair[0]), _mask(pair[1], len(points))
     if own is None or mask is None or not np.isfinite(own).all():
-        return f"got {shown(got)}, expected {_wanted(expected)}"
+        return f"got {shown(got)}, expected {wanted}"
     distance = np.abs(points @ (np.cos(own[0]), np.sin(own[0])) - own[1])
     wrong = (mask != (distance <= threshold)) & (np.abs(distance - threshold) > EDGE)
     if wrong.any():
@@ -175,20 +176,12 @@ def _judge_consensus(got: Any, expected: Any, args: tuple[Any, ...]) -> str | No
     most = int(expected[1].sum())
     if mask.sum() < ENOUGH * most:
         return f"{FEW} {int(mask.sum())} inliers, expected about {most}"
-    best = fitted(points[mask])
-    off = np.inf if best is None else float(np.abs(_apart(points[mask], best, own)).max())
+    best = fitted(points[mask]) or own  # so many inliers always fix a line
+    off = float(np.abs(_apart(points[mask], best, own)).max())
     # Only a sample goes exactly through two points; it may stay where a refit would lose inliers.
-    sampled = (
-        off > EDGE and np.count_nonzero(distance <= EDGE) >= 2 and near(points, best, threshold).sum() >= mask.sum()
-    )
-    return (
-        f"the line is {shown(1000 * off)} mm off the {NOT_REFITTED}" if sampled or off > OFF_FIT * threshold else None
-    )
-
-
-def _wanted(expected: Any) -> str:
-    """Say what the loop should return."""
-    return "None" if expected is None else "a line (angle, offset) and True or False for each point"
+    sampled = off > EDGE and (distance <= EDGE).sum() >= 2 and near(points, best, threshold).sum() >= mask.sum()
+    fits = off <= OFF_FIT * threshold and not sampled
+    return None if fits else f"the line is {shown(1000 * off)} mm off the {NOT_REFITTED}"
 
 
 def _apart(points: Floats, one: Pair, other: Pair) -> Floats:
@@ -224,18 +217,17 @@ def _near_with(distance: Any) -> Any:
 
 
 def _not_counting_the_boundary(points: Floats, line: Any, threshold: float) -> NDArray[np.bool_]:
-    inside: NDArray[np.bool_] = near(points, line, threshold) & near(points, line, threshold - 2 * ROUNDING)
-    return inside
+    return near(points, line, threshold - 2 * ROUNDING)
 
 
-def _off_only(cases: list[Case], special: Any) -> bool:
-    """Tell whether the special cases, and nothing else, are off."""
-    return all(special(case) for case in cases if case.off)
+def _without_a_line(cases: list[Case]) -> bool:
+    """Tell whether nothing is off but what fixes no line."""
+    return all(case.expected is None for case in cases if case.off)
 
 
-def _upright(case: Case) -> bool:
-    p, q = case.args
-    return bool(p[0] == q[0] and p[1] != q[1])
+def _upright(cases: list[Case]) -> bool:
+    """Tell whether nothing is off but pairs one above the other, doubled points included."""
+    return all(case.args[0][0] == case.args[1][0] for case in cases if case.off)
 
 
 def _as_a_number(cases: list[Case]) -> bool:
@@ -285,14 +277,8 @@ line_through = Check(
     _pairs,
     line(),
     (
-        Fault(
-            "Twice the same point fixes no line: return None before anything is divided.",
-            when=lambda cases: _off_only(cases, lambda case: case.expected is None),
-        ),
-        Fault(
-            "Upright lines come out wrong: is something divided by a difference in x?",
-            when=lambda cases: _off_only(cases, lambda case: _upright(case) or case.expected is None),
-        ),
+        Fault("Twice the same point fixes no line: return None before anything is divided.", when=_without_a_line),
+        Fault("Upright lines come out wrong: is something divided by a difference in x?", when=_upright),
         Fault("That is the bearing of the line itself: its normal is a quarter turn away.", like=_through_with(_along)),
         Fault(
             "The offset has a sign: it belongs to the normal that you return.",
@@ -339,10 +325,7 @@ fit_line = Check(
     _clouds,
     line(),
     (
-        Fault(
-            "Fewer than two different points fix no line: return None.",
-            when=lambda cases: _off_only(cases, lambda case: case.expected is None),
-        ),
+        Fault("Fewer than two different points fix no line: return None.", when=_without_a_line),
         Fault("That fits y = a x + b: it measures along y, and upright walls fail.", when=_least_squares_in_y),
         Fault(
             "That is the direction of most scatter, along the wall: the normal is across.",
@@ -358,10 +341,7 @@ ransac_line = Check(
     _scenes,
     _judge_consensus,
     (
-        Fault(
-            "Where no two points differ there is no line: return None.",
-            when=lambda cases: _off_only(cases, lambda case: case.expected is None),
-        ),
+        Fault("Where no two points differ there is no line: return None.", when=_without_a_line),
         Fault("Inliers belong to the line that is returned: take them anew after the refit.", when=_told(NOT_ITS_OWN)),
         Fault("Far fewer inliers than possible: is the best trial kept, or the first, or the last?", when=_told(FEW)),
         Fault("The line still goes through its two points: fit it to all its inliers.", when=_told(NOT_REFITTED)),
