@@ -47,7 +47,7 @@ AROUND = (0.175, 0.115)  # m: the ellipse's half axes
 FARTHEST = 0.1  # m: every point of the group counts for every candidate
 MOST_RADIUS = 0.25  # m: a larger circle is a wall
 TURNS = 6  # first guesses of an outline, each turned a little further
-CUT = 0.006  # m: how much of a corner a first guess cuts off
+CUTS = (0.002, 0.008)  # m: how much of a corner a first guess cuts off
 # A closed outline bends at each corner by this at least and at most [rad], and has no shorter side than this [m].
 LEAST_TURN, MOST_TURN, LEAST_SIDE = np.radians(2), np.radians(175), 0.003
 
@@ -160,18 +160,21 @@ def _cut(outline: Outlines | None, corners: int) -> list[Outlines]:
     """Return first guesses with so many sides more: that many corners of an outline are cut off, in all ways."""
     if outline is None:
         return []
-    angles, places = outline.angles[0], outline.corners()[0]
-    bend = np.mod(angles - np.roll(angles, 1), 2 * np.pi)
-    new = np.roll(angles, 1) + bend / 2
-    offsets = places[:, 0] * np.cos(new) + places[:, 1] * np.sin(new) - CUT
+    angles, offsets, places = outline.angles[0], outline.offsets[0], outline.corners()[0]
+    before = np.roll(angles, 1)
+    new = before + np.mod(angles - before, 2 * np.pi) / 2
+    reach = places[:, 0] * np.cos(new) + places[:, 1] * np.sin(new)
     ways = [list(way) for way in combinations(range(len(angles)), corners)]
-    sides = [(np.append(angles, new[way]), np.append(outline.offsets[0], offsets[way])) for way in ways]
+    sides = [(np.append(angles, new[w]), np.append(offsets, reach[w] - cut)) for cut in CUTS for w in ways]
     return [from_angle_order(np.array([a for a, _ in sides]), np.array([d for _, d in sides]))]
 
 
 def _closest(points: Floats, guess: Outlines, *, square: bool = False) -> Outlines | None:
-    """Give each point to a side and refit until nothing moves; return the closest outline that closes, or None."""
-    found = refine_hard(points, guess, FARTHEST, square=square)
+    """Give each point to a side and refit until nothing moves; return the closest outline that closes, or None.
+
+    The guesses stand for election as well: a corner that is cut off by a hair may close where its refit does not.
+    """
+    found = joined(refine_hard(points, guess, FARTHEST, square=square), guess)
     turn = np.mod(np.roll(found.angles, -1, axis=1) - found.angles, 2 * np.pi)
     begin, end = found.spans()
     closed = ((turn >= LEAST_TURN) & (turn <= MOST_TURN) & (end - begin >= LEAST_SIDE)).all(axis=1)
