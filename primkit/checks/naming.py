@@ -116,6 +116,8 @@ def _opposite_alone(cases: list[Case]) -> bool:
     return all(case.off is None or (case.expected is None and case.args[0][0] != case.args[1][0]) for case in cases)
 
 
+_OF_THE_NORMAL = "The angle is that of the normal, which stands square on the line; it is not the line's own direction."
+
 meet = Check(
     "meet",
     meet_in,
@@ -127,14 +129,8 @@ meet = Check(
             when=_opposite_alone,
         ),
         Fault("Every corner is right. Parallel lines have none: return None for them.", when=_parallel_alone),
-        Fault(
-            "The angle is that of the normal, which stands square on the line; it is not the line's own direction.",
-            like=_with(lambda line: (line[0] + np.pi / 2, line[1])),
-        ),
-        Fault(
-            "The angle is that of the normal, which stands square on the line; it is not the line's own direction.",
-            like=_with(lambda line: (line[0] - np.pi / 2, line[1])),
-        ),
+        Fault(_OF_THE_NORMAL, like=_with(lambda line: (line[0] + np.pi / 2, line[1]))),
+        Fault(_OF_THE_NORMAL, like=_with(lambda line: (line[0] - np.pi / 2, line[1]))),
         Fault(
             "That is the corner on the other side of the origin: by the sine of which difference is divided?",
             like=_with(lambda line: line, -1.0),
