@@ -51,10 +51,11 @@ def lab(context):
 
 
 @pytest.fixture(scope="package")
-def screenshots(request, tmp_path_factory):
-    """The folder for pictures of the lessons: --screenshots, or a temporary one."""
-    folder = request.config.getoption("screenshots", None) or tmp_path_factory.mktemp("screenshots")
-    folder.mkdir(parents=True, exist_ok=True)
+def screenshots(request):
+    """The folder for pictures of the lessons, if it is asked for by --screenshots."""
+    folder = request.config.getoption("screenshots", None)
+    if folder:
+        folder.mkdir(parents=True, exist_ok=True)
     return folder
 
 

@@ -20,6 +20,7 @@ from .panel import Panel, panels
 ROOT = Path(__file__).resolve().parents[2]
 LESSONS = [path.stem for path in sorted((ROOT / "notebooks").glob("*.ipynb"))]
 PATIENCE = 60  # s: for a server to come up, on a machine that is busy
+TALLEST = 16_000  # px: browsers draw no taller picture
 
 SERVER = """
 import os, signal, sys, threading
@@ -157,10 +158,15 @@ class Lesson:
         self.page.set_viewport_size({"width": width, "height": height})
         self.settle()
 
-    def height(self) -> int:
-        """Return how tall a window would have to be to show the whole lesson; browsers end at 16,000 px."""
-        tall = "(panel) => panel.scrollHeight"
-        return min(16_000, 150 + self.page.locator(".jp-Notebook .jp-WindowedPanel-outer").evaluate(tall))
+    def photograph(self, folder: Path, widths: list[int]) -> None:
+        """Keep pictures of the sliders and of the whole lesson in a folder."""
+        for width in widths:
+            self.widen(width)
+            for number, panel in enumerate(self.panels, 1):
+                panel.root.screenshot(path=folder / f"{self.name}_{width}_slider_{number}.png")
+            tall = self.page.locator(".jp-Notebook .jp-WindowedPanel-outer").evaluate("(all) => all.scrollHeight")
+            self.widen(width, min(tall + 150, TALLEST))
+            self.page.screenshot(path=folder / f"{self.name}_{width}.png")
 
     def close(self) -> None:
         """Close the lesson and end its kernel."""

@@ -96,7 +96,7 @@ class Panel:
 
     def seen(self, what: str) -> list:
         """Return what was seen since then: "waits" in ms, "heights" in px, or "failures" in words."""
-        return list(dict.fromkeys(self._watch.evaluate(f"(watch) => watch.{what}")))
+        return self._watch.evaluate(f"(watch) => watch.{what}")
 
     def changes(self, move: Move) -> bool:
         """Make a move; tell whether it changes the picture."""

@@ -37,12 +37,13 @@ def test_a_slider_moves_the_picture(panel, move):
     slider.step() if move == "keys" else slider.drag(0.7)
     panel.await_another(before)
     assert panel.seen("failures") == []
-    assert len(panel.seen("heights")) == 1
+    assert len(set(panel.seen("heights"))) == 1
 
 
 @pytest.mark.parametrize("width", [WIDE, NARROW])
 def test_it_fits(page, panel, width, screenshots):
     page.set_viewport_size({"width": width, "height": 1000})
-    panel.root.scroll_into_view_if_needed()
-    page.screenshot(path=screenshots / f"voila_{width}.png")
+    if screenshots:
+        panel.root.scroll_into_view_if_needed()
+        page.screenshot(path=screenshots / f"voila_{width}.png")
     assert too_wide(page, ".jupyter-widgets, .jp-RenderedImage, img") == []

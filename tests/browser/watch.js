@@ -9,7 +9,6 @@
   const height = () => Math.round(area.getBoundingClientRect().height);
   watch.markup = () => [...root.querySelectorAll("svg")].map((svg) => svg.outerHTML).join("");
   watch.look = () => {
-    watch.heights.push(height());
     watch.failures.push(...(words().match(failure) ?? []).slice(0, 1));
     if (watch.markup() === watch.seen) return;
     if (watch.pressed) watch.waits.push(performance.now() - watch.pressed);
@@ -22,6 +21,7 @@
 
   watch.anew();
   root.addEventListener("keydown", (event) => (watch.pressed = event.timeStamp), { capture: true });
+  new ResizeObserver(() => watch.heights.push(height())).observe(area); // once a frame: what an eye can see
   new MutationObserver(watch.look).observe(root, { subtree: true, childList: true, characterData: true });
   return watch;
 };
