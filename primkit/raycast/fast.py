@@ -9,7 +9,7 @@ interval of bearings, and only the beams in it are computed.
 
 A side, as seen by the robot R. Its line runs at the distance h; F is the point of the line right ahead of it::
 
-        left                         F          right
+         left               s        F          right
       ----+-----------------+--------+------------+----     s grows to the left, s = 0 at F
                              .       |
                               t   phi|h
@@ -128,8 +128,8 @@ def _cast_block(scene: _Scene, fan: Fan, poses: Floats, ranges: Floats, limits: 
     for pair, hits_on in ((polygons, _hits_on_sides), (circles, _hits_on_circles)):
         if len(pair):
             place, t, within = hits_on(scene, fan, (x, y, heading), pose.take(pair), shape.take(pair))
-            np.minimum.at(nearest, place, np.minimum(np.maximum(t, limits[0]), limits[1]))
             hidden.append(place.compress(t < limits[0] - ROUNDING))  # what is too near hides what is behind it
+            np.minimum.at(nearest, place, np.minimum(np.maximum(t, limits[0], out=t), limits[1], out=t))
             inside.append(within)
     for place in hidden:
         nearest[place] = np.inf
@@ -162,7 +162,8 @@ def _hits_on_sides(scene: _Scene, fan: Fan, here: tuple[Floats, ...], pose: Ints
 
     # 4. Where, and how far that is.
     phi, h = fan.angles.take(beam) - ahead.take(hit), h.take(hit)
-    s = np.minimum(np.maximum(h * np.tan(phi), right.take(hit)), left.take(hit))
+    s = h * np.tan(phi)
+    s = np.minimum(np.maximum(s, right.take(hit), out=s), left.take(hit), out=s)
     return (fan.size * pose).take(hit) + beam, np.sqrt(h * h + s * s), within
 
 

@@ -104,4 +104,6 @@ def runs(first: Ints, length: Ints) -> tuple[Ints, Ints]:
     """
     run = np.arange(len(length)).repeat(length)
     before = length.cumsum() - length  # numbers in all runs before this one
-    return run, np.arange(len(run)) + (first - before).take(run)
+    number = np.arange(len(run))
+    number += (first - before).take(run)
+    return run, number
