@@ -109,7 +109,7 @@ def draw_scores(tolerance: float, shape: float, center: float, board: str, noise
             FRAME.polyline(np.column_stack([CURVE, curves[0]]), color, 1.5, "5 3"),
             FRAME.polyline(np.column_stack([CURVE, curves[1]]), color, 2.5),
             FRAME.points([(tolerance, fair[name])], color, marker, 11),
-            FRAME.points([(tolerance, lax[name])], color, "ring", 11),
+            FRAME.points([(tolerance, lax[name])], color, "ring", 16),
         ]
     return picture(
         FRAME,
@@ -121,7 +121,7 @@ def draw_scores(tolerance: float, shape: float, center: float, board: str, noise
             [
                 ("ROBUST, two-sided", BLUE, "dot"),
                 ("PAPER, two-sided", VERMILION, "square"),
-                ("dashed: one-sided, too small is right", INK, "ring"),
+                ("one-sided (dashed): too small is right", INK, "ring"),
             ],
             corner="bottom left",
         ),
