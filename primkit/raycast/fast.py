@@ -5,9 +5,10 @@ Out: distances, shape (P, B), metres; infinity where a beam meets nothing.
 
 How it is fast. The plain way asks every beam of every pose about every side: P x B x S questions, and nearly all
 answers are no. Turn the question round: ask a side, once for each pose, which beams it stops. It answers with an
-interval of bearings, and only the beams in it are computed.
+interval of bearings, beams are evenly spread, so that their numbers follow by a division (``fan.py``), and only they
+are computed.
 
-A side, as seen by the robot R. Its line runs at the distance h; F is the point of the line right ahead of it::
+A side, as seen by the robot R. F is the foot of the perpendicular on the side's line, at the distance h::
 
          left               s        F          right
       ----+-----------------+--------+------------+----     s grows to the left, s = 0 at F
@@ -26,14 +27,15 @@ A side, as seen by the robot R. Its line runs at the distance h; F is the point 
     4. Each of these beams meets the line at s = h tan(phi). Along a side seen edge-on, h is 0 and tan(phi) infinite,
        up to rounding: s is held between the ends.
 
-A circle with its centre at the distance d stops the beams between its two tangents, of the length sqrt(d^2 - r^2).
-When the tangents are out of range, those up to where the range ends: by the law of cosines for the triangle of
-robot, centre and the last point in sight.
+A circle of radius r with its centre at the distance d stops the beams between its two tangents, which are
+sqrt(d^2 - r^2) long; or up to where the range ends, if that is less. Robot, centre and this last point in sight, at the
+distance q, make a triangle: the beams lie within arccos((d^2 + q^2 - r^2) / (2 d q)) of the centre's bearing. At phi
+from it, the near side of the circle is d cos(phi) less half a chord away, and a chord is 2 sqrt(r^2 - (d sin(phi))^2).
 
 Last, a beam keeps the nearest of its hits.
 
-Legend: a pair is one pose with one shape near enough to be seen from it (``near.py``); phi is a beam's bearing from
-what is right ahead: F, or the circle's centre.
+Legend: a pair is one pose with one shape near enough to be seen from it (``near.py``); "toward" is the bearing of F, or
+of the circle's centre, from the robot's heading, and phi a beam's bearing from there.
 """
 
 from __future__ import annotations
@@ -157,11 +159,11 @@ def _hits_on_sides(scene: _Scene, fan: Fan, here: tuple[Floats, ...], pose: Ints
     right = np.maximum(right, -half)
 
     # 3. The beams that hit it.
-    ahead = scene.inward.take(side) - heading.take(pose)
-    hit, beam = fan.between(ahead + np.arctan2(right, h), ahead + np.arctan2(left, h))
+    toward = scene.inward.take(side) - heading.take(pose)
+    hit, beam = fan.between(toward + np.arctan2(right, h), toward + np.arctan2(left, h))
 
     # 4. Where, and how far that is.
-    phi, h = fan.angles.take(beam) - ahead.take(hit), h.take(hit)
+    phi, h = fan.angles.take(beam) - toward.take(hit), h.take(hit)
     s = h * np.tan(phi)
     s = np.minimum(np.maximum(s, right.take(hit), out=s), left.take(hit), out=s)
     return (fan.size * pose).take(hit) + beam, np.sqrt(h * h + s * s), within
@@ -177,17 +179,17 @@ def _hits_on_circles(scene: _Scene, fan: Fan, here: tuple[Floats, ...], pose: In
     pose, cx, cy, r, d = (v.take(outside) for v in (pose, cx, cy, r, d))
 
     # 1. The beams between the two tangents, as far as they are in range.
-    power = (d - r) * (d + r)  # the tangents' length, squared
-    sight = np.minimum(np.sqrt(power), scene.reach)
-    half = np.arccos(np.minimum((power + sight * sight) / (2 * d * sight), 1.0))
-    ahead = np.arctan2(cy, cx) - heading.take(pose)
-    hit, beam = fan.between(ahead - half, ahead + half)
+    power = (d - r) * (d + r)  # the tangents' length, squared: d^2 - r^2 without loss
+    q = np.minimum(np.sqrt(power), scene.reach)
+    half = np.arccos(np.minimum((power + q * q) / (2 * d * q), 1.0))
+    toward = np.arctan2(cy, cx) - heading.take(pose)
+    hit, beam = fan.between(toward - half, toward + half)
 
-    # 2. |t u - c| = r, solved for the nearer t: d cos(phi) less half a chord. Written as a quotient, it loses no digits
-    #    when the two are close.
-    phi, d, r = fan.angles.take(beam) - ahead.take(hit), d.take(hit), r.take(hit)
-    aside = d * np.sin(phi)
-    t = power.take(hit) / (d * np.cos(phi) + np.sqrt(np.maximum(r * r - aside * aside, 0.0)))
+    # 2. Where, and how far that is. With c for half a chord, along - c = (along^2 - c^2) / (along + c) = power / (along + c):
+    #    the quotient loses no digits when the two are close.
+    phi, d, r = fan.angles.take(beam) - toward.take(hit), d.take(hit), r.take(hit)
+    along, aside = d * np.cos(phi), d * np.sin(phi)
+    t = power.take(hit) / (along + np.sqrt(np.maximum(r * r - aside * aside, 0.0)))
     return (fan.size * pose).take(hit) + beam, t, within
 
 
