@@ -185,8 +185,8 @@ def _hits_on_circles(scene: _Scene, fan: Fan, here: tuple[Floats, ...], pose: In
     toward = np.arctan2(cy, cx) - heading.take(pose)
     hit, beam = fan.between(toward - half, toward + half)
 
-    # 2. Where, and how far that is. With c for half a chord, along - c = (along^2 - c^2) / (along + c) = power / (along + c):
-    #    the quotient loses no digits when the two are close.
+    # 2. Where, and how far that is. With c for half a chord, along - c = (along^2 - c^2) / (along + c), and the
+    #    quotient loses no digits when the two are close; along^2 - c^2 is the power.
     phi, d, r = fan.angles.take(beam) - toward.take(hit), d.take(hit), r.take(hit)
     along, aside = d * np.cos(phi), d * np.sin(phi)
     t = power.take(hit) / (along + np.sqrt(np.maximum(r * r - aside * aside, 0.0)))
