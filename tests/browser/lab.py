@@ -110,21 +110,23 @@ OPEN = """async (path) => {
     const open = await window.jupyterapp.commands.execute("docmanager:open", { path, factory: "Notebook" });
     await open.context.ready;
     await open.sessionContext.ready;
+    const asked = new Set(); // what widgets asked the kernel, and it has not yet done
     const said = [];
-    open.sessionContext.iopubMessage.connect((_, { header, content }) => {
+    open.sessionContext.session.kernel.anyMessage.connect((_, { direction, msg }) => {
+        const { header, parent_header, content } = msg;
+        if (direction === "send" && header.msg_type === "comm_msg") asked.add(header.msg_id);
+        if (content.execution_state === "idle") asked.delete(parent_header.msg_id);
         if (header.msg_type === "error") said.push(`${content.ename}: ${content.evalue}`);
         if (content.name === "stderr") said.push(content.text);
     });
-    return { open, said };
+    return { open, asked, said };
 }"""
 
-# The kernel answers in the order of the questions. Twice: of a slider's moves in quick succession, the last is sent
-# when the first is done.
-SETTLE = """async ({ open }) => {
-    const kernel = open.sessionContext.session.kernel;
-    for (let i = 0; i < 2; i++)
-        await kernel.requestExecute({ code: "", silent: true, store_history: false }).done;
-    await new Promise((seen) => requestAnimationFrame(() => setTimeout(seen)));
+# Cells and widgets have threads of their own in the kernel: a cell's end tells nothing of a slider's. When one move is
+# done, the next may be sent, so nothing may be open for two frames.
+SETTLE = """async ({ asked }) => {
+    const frame = () => new Promise((seen) => requestAnimationFrame(() => setTimeout(seen)));
+    for (let quiet = 0; quiet < 2; quiet = asked.size ? 0 : quiet + 1) await frame();
 }"""
 
 CLOSE = """async ({ open }) => {
