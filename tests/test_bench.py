@@ -48,9 +48,12 @@ def without_peers(monkeypatch):
 
 def test_tools_take_turns_after_all_have_warmed_up():
     calls = []
-    taken = in_turns({name: lambda name=name: calls.append(name) for name in "ab"}, rounds=2)
-    assert "".join(calls) == "ab" + "abab"
-    assert {name: each.shape for name, each in taken.items()} == {"a": (2,), "b": (2,)}
+    taken = in_turns({name: lambda name=name: calls.append(name) for name in "abc"}, rounds=8)
+    assert calls[:3] == ["a", "b", "c"]
+    rounds = ["".join(calls[i : i + 3]) for i in range(3, 27, 3)]
+    assert ["".join(sorted(order)) for order in rounds] == ["abc"] * 8
+    assert len(set(rounds)) > 2, "none should always come after the same"
+    assert {name: each.shape for name, each in taken.items()} == dict.fromkeys("abc", (8,))
 
 
 def test_the_collector_is_as_it_was_even_after_an_error():

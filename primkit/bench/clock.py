@@ -48,7 +48,7 @@ class Spread:
 
 
 def in_turns(tools: Mapping[str, Tool], rounds: int) -> dict[str, Floats]:
-    """Return the seconds that each tool takes, shape (rounds,): all once for warming up, then A B C A B C...
+    """Return the seconds that each tool takes, shape (rounds,): all once for warming up, then round after round.
 
     Parameters
     ----------
@@ -56,14 +56,20 @@ def in_turns(tools: Mapping[str, Tool], rounds: int) -> dict[str, Floats]:
         What is timed; each call must do the same work.
     rounds : int
         How often.
+
+    Notes
+    -----
+    The order changes from round to round: a tool finds the caches as the one before left them, and none should always
+    come after the same.
     """
     for tool in tools.values():  # loads, compiles and fills caches
         tool()
     taken: dict[str, list[float]] = {name: [] for name in tools}
+    orders = np.random.default_rng(0)
     with no_collection():
         for _ in range(rounds):
-            for name, tool in tools.items():
-                taken[name].append(seconds(tool))
+            for name in orders.permutation(list(tools)).tolist():
+                taken[name].append(seconds(tools[name]))
     return {name: np.array(each) for name, each in taken.items()}
 
 

@@ -56,8 +56,9 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 Hits = tuple[Ints, Floats, Ints]  # where in the table of ranges, how far; and the poses that lie in a shape
 
-# Poses are cast in blocks of at most so many pairs and beams: some MB, small enough for the cache.
-PAIRS_PER_BLOCK, BEAMS_PER_BLOCK = 16_384, 400_000
+# Poses are cast in blocks of at most so many pairs and beams: some MB, which stay in the cache, and which the system
+# does not take back between two blocks (getting them again would cost as much as all the computing).
+PAIRS_PER_BLOCK, BEAMS_PER_BLOCK = 16_384, 200_000
 SIDES = 5  # of a polygon; fewer are filled up with sides without length, which face nobody
 
 
