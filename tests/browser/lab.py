@@ -166,9 +166,16 @@ class Lesson:
             self.widen(width)
             for number, panel in enumerate(self.panels, 1):
                 panel.root.screenshot(path=folder / f"{self.name}_{width}_slider_{number}.png")
-            tall = self.page.locator(".jp-Notebook .jp-WindowedPanel-outer").evaluate("(all) => all.scrollHeight")
-            self.widen(width, min(tall + 150, TALLEST))
+            self.widen(width, min(self._to_the_top() + 80, TALLEST))
+            self._to_the_top()
             self.page.screenshot(path=folder / f"{self.name}_{width}.png")
+
+    def _to_the_top(self) -> int:
+        """Scroll up; return where the last cell ends then, in px."""
+        return self.page.locator(".jp-Notebook .jp-WindowedPanel-outer").evaluate("""(all) => {
+            all.scrollTop = 0;
+            return Math.ceil([...all.querySelectorAll(".jp-Cell")].at(-1).getBoundingClientRect().bottom);
+        }""")
 
     def close(self) -> None:
         """Close the lesson and end its kernel."""
