@@ -15,8 +15,9 @@ grid's cells do not where a side runs along them: a wall at x = 0.1234 m falls i
 end to the other, and no number of points tells. A turned side crosses many cells, and the error averages out too;
 without noise even faster than is stated here, so that the deviations are then an upper bound.
 
-Sources: propagation of errors through the least-squares fit, as in any text on it; for points of doubtful side Louis
-(1982), "Finding the observed information matrix when using the EM algorithm".
+Sources: propagation of errors through the least-squares fit, as in any text on it; for unequal scatter White (1980), "A
+heteroskedasticity-consistent covariance matrix estimator"; for points of doubtful side Louis (1982), "Finding the
+observed information matrix when using the EM algorithm".
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .evidence import seen_shares
 from .outlines import Outlines
 from .refine import shares
 from .scatter import CELL, CELL_STD, SIGMAS
@@ -33,10 +35,13 @@ from .shapes import Circle
 
 Floats = NDArray[np.float64]
 
-# A side was seen when so many points lie on it, over such a length [m], and not near a corner, where they may as well
-# belong to the neighbour: a line over a hidden side touches the last points of both neighbours.
+# A side was seen when so many points lie on it, over such a length [m] and such a share of it, and not near a corner,
+# where they may as well belong to the neighbour: a line over a hidden side touches the last points of both neighbours.
+# What shows less may as well be a piece of something else; so may an arc of less than such a share of its circle.
 LEAST_ON_SIDE = 4
 LEAST_STRETCH = 0.008
+LEAST_SHARE = 0.4
+LEAST_OF_CIRCLE = 0.45
 CORNER_SPREADS = 4.0
 MOST_STD = 0.01  # m: what is not even known to a centimetre was not measured, but supposed
 STEP = 1e-6  # rad and m: the derivatives' step, far above rounding and far below any curvature
@@ -94,23 +99,32 @@ def sides_seen(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bo
     """Tell which sides of an outline have points of their own, away from their corners, shape (K,)."""
     r = figure.distances(points)[0]
     t = figure.along(points)[0]
-    seen = []
+    begin, end = figure.spans()
+    lengths, seen = (end - begin)[0], []
     for side in range(r.shape[1]):
         others = np.delete(r, side, axis=1)
         own = (np.abs(r[:, side]) <= SIGMAS * spread) & (others < -CORNER_SPREADS * spread).all(axis=1)
         stretch = np.ptp(t[own, side]) if own.any() else 0.0
-        seen.append(np.count_nonzero(own) >= LEAST_ON_SIDE and stretch >= LEAST_STRETCH)
+        inner = max(lengths[side] - 2 * CORNER_SPREADS * spread, 0.0)
+        seen.append(np.count_nonzero(own) >= LEAST_ON_SIDE and stretch >= max(LEAST_STRETCH, LEAST_SHARE * inner))
     return np.array(seen)
 
 
 def _of_circle(circle: Circle, points: Floats) -> Certainty:
-    """Propagate the residuals through the geometric fit: (J'J)^-1 variance, with J the slopes of the distances."""
+    """Propagate the residuals through the geometric fit: (J'J)^-1 J' diag(r^2) J (J'J)^-1, J their slopes.
+
+    Each residual stands for its own variance (White, 1980), because points at the ends of an arc scatter less across
+    it than those in its middle: there the beams graze.
+    """
     bearing = np.arctan2(*(points - circle.center).T[::-1])
     slopes = np.column_stack([np.cos(bearing), np.sin(bearing), np.ones(len(points))])
-    variance = (circle.signed_distance(points) ** 2).sum() / max(len(points) - 3, 1)
-    covariance = np.linalg.pinv(slopes.T @ slopes) * max(variance, CELL_STD**2)
+    spare = len(points) / max(len(points) - 3, 1)
+    variance = np.maximum(circle.signed_distance(points) ** 2 * spare, CELL_STD**2)
+    inverse = np.linalg.pinv(slopes.T @ slopes)
+    covariance = inverse @ (slopes.T * variance) @ slopes @ inverse
     x, y, radius = np.sqrt(np.diag(covariance)).tolist()
-    return Certainty((x, y), (radius,))
+    enough = seen_shares(circle, points)[0] >= LEAST_OF_CIRCLE and radius <= MOST_STD
+    return Certainty((x, y), (radius if enough else float("inf"),))
 
 
 def _of_sides(figure: Outlines, points: Floats, spread: float, square: bool) -> Floats:

@@ -33,6 +33,8 @@ Method = Literal["kasa", "pratt", "taubin", "geometric"]
 
 # Points whose circle is more than this many times wider than they are spread lie on a line, as far as one can tell.
 FLAT = 1e4
+GRAZING, MOST_GRAZING = 6.0, 30.0  # how much grazing beams shrink an arc: see ``straightened``
+FINEST = 1e-12  # keeps what is divided by above zero
 STEPS = 50  # Gauss-Newton settles within five steps at 1 % noise, within some fifteen at 10 %
 
 
@@ -121,6 +123,50 @@ def find_circle(
     """
     consensus = run_ransac(points, CIRCLE, threshold, trials=trials, refit=refit, rng=rng)
     return None if consensus is None else Circle(consensus.params[:2], float(consensus.params[2]))
+
+
+def straightened(circle: Circle, points: Floats, noise_std: float, seen: float) -> Circle:
+    """Return the circle as it would be without what grazing beams do to the ends of an arc.
+
+    A LiDAR errs along its beam. Where beams graze, at the ends of the arc that they see, too long a range carries the
+    point on into the shadow and inwards: the least-squares circle comes out too small, and too near. From all around
+    these errors even out.
+
+    Parameters
+    ----------
+    circle : Circle
+        Least-squares fit to the points.
+    points : array, shape (N, 2)
+        Seen from outside, metres.
+    noise_std : float
+        Standard deviation of the ranges, metres.
+    seen : float
+        Share of the circle that was seen, above 0 and at most 1.
+
+    Notes
+    -----
+    With u = noise_std^2 / (2 radius), the least-squares radius is too small by f u with f = 6 (1 / seen - 1)^2, and the
+    centre too near by (f + p) u, with p the length of the mean of the unit vectors from the centre to the points. The
+    form of f was found by simulation: 30 where three tenths are seen, and no more for less, 12 for five twelfths, 6 for
+    one half, 1 for seven tenths; ``tests/test_circles.py`` repeats it. The radius is corrected by a tenth at most.
+
+    Examples
+    --------
+    >>> from primkit.shapes import Circle
+    >>> half = Circle((0, 0), 0.05).outline(100)[:50]
+    >>> straightened(Circle((0, 0), 0.05), half, 0.005, 0.5).radius > 0.051
+    True
+    >>> straightened(Circle((0, 0), 0.05), half, 0.0, 0.5).radius
+    0.05
+    """
+    outward = points - circle.center
+    middle = (outward / np.maximum(np.hypot(*outward.T), FINEST)[:, None]).mean(axis=0)
+    length = float(np.hypot(*middle))
+    unit = noise_std**2 / (2 * circle.radius)
+    factor = min(GRAZING * (1 / seen - 1) ** 2, MOST_GRAZING)
+    too_small = min(factor * unit, circle.radius / 10)
+    too_near = (too_small + length * unit) * middle / max(length, FINEST)
+    return Circle(circle.center - too_near, circle.radius + too_small)
 
 
 def _as_weights(weights: ArrayLike | None, n: int) -> Floats:

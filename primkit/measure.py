@@ -20,10 +20,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from .arguments import as_points, as_positive
 from .certainty import certainty
+from .circles import straightened
 from .evidence import Candidate, seen_shares
 from .explain import candidates
-from .scatter import LEAST_SPREAD, SIGMAS
-from .shapes import Kind, Shape
+from .scatter import LEAST_SPREAD, SIGMAS, noise_of
+from .shapes import Circle, Kind, Shape
 
 Floats = NDArray[np.float64]
 
@@ -124,7 +125,12 @@ def as_detection(points: Floats, ranked: list[Candidate], spread: float) -> Dete
     found = detection(best.shape, points, SIGMAS * spread)
     middle = found.points.mean(axis=0)
     sure = certainty(best.figure.moved(-middle), found.points - middle, spread, square=best.square)
-    return replace(found, margin=rival - best.cost, center_std=sure.center_std, dimension_std=sure.dimension_std)
+    shape = best.shape
+    if isinstance(shape, Circle):
+        shape = straightened(shape, found.points, noise_of(spread), found.seen[0])
+    return replace(
+        found, shape=shape, margin=rival - best.cost, center_std=sure.center_std, dimension_std=sure.dimension_std
+    )
 
 
 def spread_of(points: ArrayLike) -> float:

@@ -25,7 +25,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import as_points, as_poses, as_positive, check_type, short
+from .arguments import as_point, as_points, as_poses, as_positive, check_type, short
 from .world import World
 
 STEP_X = 0.15  # m between way-points along x
@@ -170,7 +170,7 @@ def advance(world: World, pose: ArrayLike, wheels: ArrayLike, time: float = PERI
     (0.013, True)
     """
     check_type(world, World, "world must be a World")
-    here, speeds = _as_pose(pose), _as_wheels([wheels])[0]
+    here, speeds = _as_pose(pose), _not_too_fast(as_point(wheels, "wheels"))
     seconds = as_positive(time, "time", zero=True)
     way = WHEEL * float(np.abs(speeds.sum())) / 2 * seconds
     times = np.linspace(0, seconds, 2 + int(way / CLEAR))
@@ -214,7 +214,7 @@ def drive(
     """
     check_type(world, World, "world must be a World")
     poses = [start_pose(world) if start is None else _as_pose(start)]
-    for speeds in _as_wheels(wheels):
+    for speeds in _not_too_fast(as_points(wheels, "wheels")):
         poses.append(advance(world, poses[-1], speeds, period)[0])
     return np.array(poses)
 
@@ -249,9 +249,9 @@ def _as_pose(pose: ArrayLike) -> NDArray[np.float64]:
     return poses[0]
 
 
-def _as_wheels(wheels: ArrayLike) -> NDArray[np.float64]:
-    """Return wheel speeds, shape (T, 2), or say in one sentence what is wrong."""
-    speeds = as_points(wheels, "wheels")
-    if np.abs(speeds).max(initial=0.0) > FASTEST:
-        raise ValueError(f"wheels must turn at {FASTEST:g} rad/s at most, got {np.abs(speeds).max():g}")
-    return speeds
+def _not_too_fast(wheels: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return wheel speeds, or refuse the fastest in one sentence."""
+    fastest = np.abs(wheels).max(initial=0.0)
+    if fastest > FASTEST:
+        raise ValueError(f"wheels must turn at {FASTEST:g} rad/s at most, got {fastest:g}")
+    return wheels

@@ -56,6 +56,15 @@ def spread_across(noise_std: float) -> float:
     return float(np.hypot(MEAN_ACROSS**0.5 * noise_std, LEAST_SPREAD))
 
 
+def noise_of(spread: float) -> float:
+    """Return by how much ranges err when points spread so far from outlines, both metres: undoes ``spread_across``.
+
+    >>> round(noise_of(spread_across(0.002)), 6), noise_of(0.0)
+    (0.002, 0.0)
+    """
+    return float(np.sqrt(max(spread**2 - LEAST_SPREAD**2, 0.0) / MEAN_ACROSS))
+
+
 def spread_from_median(median: float) -> float:
     """Return the spread of points whose median distance from their outlines this is, both metres.
 
@@ -83,13 +92,12 @@ def scatter(distance: Floats, spread: float) -> tuple[Floats, Floats]:
         1 / variance of the bell curve that the point belongs to, times ``spread^2``: 1 for all without noise; else
         more than 1 for a point near the outline, which was seen at a grazing angle, and less for one far off.
     """
-    noise = max(spread**2 - LEAST_SPREAD**2, 0.0) / MEAN_ACROSS
-    squared = distance**2
+    noise, squared = noise_of(spread), distance**2
     if noise == 0:
         return np.exp(-0.5 / spread**2 * squared) / (np.sqrt(2 * np.pi) * spread), np.ones_like(squared)
     density, told = np.zeros_like(squared), np.zeros_like(squared)
     for share, across in zip(SHARES, ACROSS, strict=True):
-        variance = LEAST_SPREAD**2 + noise * across
+        variance = LEAST_SPREAD**2 + noise**2 * across
         part = share / np.sqrt(2 * np.pi * variance) * np.exp(-0.5 / variance * squared)
         density += part
         told += part * (spread**2 / variance)

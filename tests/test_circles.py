@@ -10,7 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import least_squares
 
-from primkit.circles import CIRCLE, find_circle, fit_circle
+import primkit as pk
+from primkit.circles import CIRCLE, find_circle, fit_circle, straightened
+from primkit.evidence import seen_shares
 from primkit.ransac import draw_samples
 from primkit.shapes import Circle
 from tests.helpers import exactly
@@ -465,3 +467,51 @@ def test_two_points_above_one_another_defeat_pyransac_but_not_primkit(monkeypatc
     assert not agreeing.any()
     monkeypatch.setattr("primkit.ransac.draw_samples", lambda *_: samples)
     assert values(find_circle(points, 1e-9, trials=1, refit=False)) == pytest.approx([0, 0, 1], abs=1e-12)
+
+
+def bias_of_arcs(noise, poses_within, corrected, n=60):
+    """Mean error of the radius in units of noise^2 / (2 radius), and the share of the circle that was seen."""
+    errors, shares = [], []
+    for seed in range(n):
+        rng = np.random.default_rng([61, seed])
+        true = pk.Circle((0, 0), rng.uniform(0.05, 0.1))
+        bearing = rng.uniform(-poses_within, poses_within, 30)
+        away = true.radius + rng.uniform(0.06, 0.2, 30)
+        poses = np.column_stack([away * np.cos(bearing), away * np.sin(bearing), rng.uniform(0, 6, 30)])
+        grid = pk.Grid()
+        grid.add(pk.scan(pk.World([true]), poses, pk.Lidar(noise_std=noise), rng=rng))
+        points = grid.points()
+        fit = pk.fit_circle(points)
+        seen = seen_shares(fit, points[np.abs(fit.signed_distance(points)) < 0.0123])[0]  # within 3 deviations
+        fit = straightened(fit, points, noise, seen) if corrected else fit
+        errors.append((fit.radius - true.radius) / (noise**2 / (2 * true.radius)))
+        shares.append(seen)
+    return np.mean(errors), np.mean(shares)
+
+
+@pytest.mark.parametrize("poses_within", [0.05, 0.5, 1.2])
+def test_grazing_beams_shrink_an_arc_and_the_correction_undoes_it(poses_within):
+    """Robots on one side see arcs of about 150, 185 and 250 degrees, 5 mm of noise."""
+    plain, seen = bias_of_arcs(0.005, poses_within, corrected=False)
+    assert plain == pytest.approx(-6 * (1 / seen - 1) ** 2, abs=2.5)
+    corrected, _ = bias_of_arcs(0.005, poses_within, corrected=True)
+    assert abs(corrected) < max(1.0, abs(plain) / 4)
+
+
+def test_what_is_seen_from_all_around_needs_no_correction():
+    circle, ring = pk.Circle((0.1, 0.2), 0.05), pk.Circle((0.1, 0.2), 0.05).outline(100)
+    same = straightened(circle, ring, 0.01, 1.0)
+    assert same.radius == 0.05
+    np.testing.assert_allclose(same.center, circle.center, atol=1e-9)
+
+
+@pytest.mark.parametrize("angle", [0.3, 2.0, -1.5])
+def test_the_correction_turns_with_the_arc_and_moves_the_centre_away_from_the_robot(angle):
+    half = pk.Circle((0, 0), 0.05).outline(100)[:50] @ [[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]]
+    here = straightened(pk.Circle((0, 0), 0.05), half, 0.005, 0.5)
+    towards = half.mean(axis=0) / np.hypot(*half.mean(axis=0))
+    assert here.radius == pytest.approx(0.05 + 6 * 0.005**2 / 0.1)
+    assert here.center @ towards == pytest.approx(-np.hypot(*here.center))
+    assert np.hypot(*here.center) > here.radius - 0.05
+    wild = straightened(pk.Circle((0, 0), 0.05), half, 0.5, 0.01)
+    assert wild.radius == pytest.approx(0.055)

@@ -120,8 +120,8 @@ def test_a_drive_starts_where_there_is_room():
 
 FAILURES = {
     "a wheel too fast": (((0, 0, 0), (7, 0)), "wheels must turn at 6.28 rad/s at most, got 7"),
-    "one wheel": (((0, 0, 0), (1,)), "wheels must have shape (N, 2), got shape (1, 1)"),
-    "wheels not finite": (((0, 0, 0), (1, np.nan)), "wheels must be finite, got (1.0, nan) in row 0"),
+    "one wheel": (((0, 0, 0), (1,)), "wheels must be two finite numbers (x, y), got (1,)"),
+    "wheels not finite": (((0, 0, 0), (1, np.nan)), "wheels must be two finite numbers (x, y), got (1, nan)"),
     "two poses": (
         ([(0, 0, 0)] * 2, (1, 1)),
         "a pose must be three finite numbers (x, y, heading), got [(0, 0, 0), (0, 0, 0)]",
