@@ -77,6 +77,10 @@ class Circle:
         object.__setattr__(self, "center", _frozen(as_point(center, "center")))
         object.__setattr__(self, "radius", as_positive(radius, "radius"))
 
+    def __reduce__(self) -> tuple[type[Circle], tuple[NDArray[np.float64], float]]:
+        """Copy and unpickle by making anew: an array that comes out of a pickle could be written to."""
+        return Circle, (self.center, self.radius)
+
     @property
     def kind(self) -> Kind:
         """``"circle"``."""
@@ -175,6 +179,10 @@ class Polygon:
         if not 3 <= len(corners) <= 5:
             raise ValueError(f"a polygon must have 3 to 5 different corners, got {len(corners)}")
         object.__setattr__(self, "vertices", _frozen(_counter_clockwise(corners)))
+
+    def __reduce__(self) -> tuple[type[Polygon], tuple[NDArray[np.float64]]]:
+        """Copy and unpickle by making anew, as a circle does."""
+        return Polygon, (self.vertices,)
 
     @property
     def kind(self) -> Kind:

@@ -509,6 +509,8 @@ def test_equal_hash_after_copying(shape):
     for twin in (copy.copy(shape), copy.deepcopy(shape), pickle.loads(pickle.dumps(shape))):
         assert twin == shape
         assert hash(twin) == hash(shape)
+        array = twin.center if isinstance(twin, Circle) else twin.vertices
+        assert not array.flags.writeable
 
 
 SHOWN = {
