@@ -4,7 +4,7 @@ Each shape is taken for the circle around it. A few are measured one by one. Of 
 those that can be seen from somewhere in each cell: one look-up, however many shapes there are.
 
 In:  circles around the shapes, how far the sensor sees, and positions, (P,) x and (P,) y in metres.
-Out: each (position, shape) with the shape in range: two index arrays, in the order of the positions.
+Out: each (position, shape) with the shape in range: two index arrays, in any order.
 
 >>> near = Near(np.array([0.0, 5.0]), np.array([0.0, 0.0]), np.array([0.1, 0.1]), reach=1.0)
 >>> [index.tolist() for index in near.pairs(np.array([0.5, 4.5]), np.array([0.0, 0.0]))]
@@ -44,8 +44,8 @@ class Near:
     def pairs(self, x: Floats, y: Floats) -> tuple[Ints, Ints]:
         """Return each (position, shape) with the shape in range."""
         if self.cells is None:
-            dx, dy = x[:, None] - self.x, y[:, None] - self.y
-            position, shape = (dx * dx + dy * dy <= self.far * self.far).nonzero()
+            dx, dy, far = x - self.x[:, None], y - self.y[:, None], self.far[:, None]
+            shape, position = (dx * dx + dy * dy <= far * far).nonzero()
             return position, shape
         position, shape = self.cells.candidates(x, y)
         dx, dy, far = x.take(position) - self.x.take(shape), y.take(position) - self.y.take(shape), self.far.take(shape)
