@@ -111,8 +111,7 @@ class Choice:
         """Return buttons of ipywidgets, all options in sight: Lab takes the arrow keys away from a drop-down list."""
         import ipywidgets
 
-        named = _named(self) | {"layout": _wide(WIDEST)}
-        named["style"] |= {"button_width": "auto"}
+        named = _named(self) | {"layout": _wide(WIDEST), "style": {"button_width": "auto"}}
         buttons = ipywidgets.ToggleButtons(options=self.options, value=self.start, **named)
         return buttons.add_class("widget-inline-hbox")  # the name stands to the left, as beside a slider
 
@@ -174,12 +173,20 @@ class Explorer:
         self._image = ipywidgets.HTML(svg, layout=_wide(width))
         self._readout = ipywidgets.HTML(_spoken(svg), layout=_wide(READOUT) | {"min_height": "66px"})
         self._knobs = {control.name: control.widget() for control in self.controls}
+        self._line_up()
         self._quiet = False
         for knob in self._knobs.values():
             knob.observe(self._redraw, names="value")
         buttons = [self._button(name) for name in self.settings]
         row = ipywidgets.HBox(buttons, layout=_wide(WIDEST) | {"flex_flow": "row wrap"})
         return ipywidgets.VBox([*self._knobs.values(), row, self._image, self._readout])
+
+    def _line_up(self) -> None:
+        """Give all names the width of the longest, as one that does not fit would be cut off."""
+        letters = max(len(knob.description) for knob in self._knobs.values())
+        room = max(130, 7 * letters)
+        for knob in self._knobs.values():
+            knob.style.description_width = f"{room}px"
 
     def set(self, **values: Any) -> None:
         """Move the panel's controls, and redraw once."""
@@ -260,7 +267,7 @@ def explore(draw: Draw, *controls: Control, settings: Mapping[str, Mapping[str, 
 def _named(control: Control) -> dict[str, Any]:
     """Return what all widgets of controls share: the name with its unit, and room for it."""
     label = (control.label or control.name) + (f" [{control.unit}]" if control.unit else "")
-    return {"description": label, "style": {"description_width": "130px"}, "layout": _wide(425)}
+    return {"description": label, "layout": _wide(425)}
 
 
 def _wide(width: int) -> dict[str, str]:
