@@ -35,7 +35,7 @@ explorer(lambda k: ring(k + 0.001 * next(calls)))  # never the same picture twic
 """,
     """
 square = '<svg height="{0}00" width="10"></svg>'.format  # of another height for each k, in a plain ipywidget
-slider, drawn = ipywidgets.IntSlider(1, 1, 4, description="k"), ipywidgets.HTML(square(1))
+slider, drawn = ipywidgets.IntSlider(1, 1, 4, description="a name too long for its place"), ipywidgets.HTML(square(1))
 
 def redraw(change):
     drawn.value = square(change.new)
@@ -69,7 +69,7 @@ BREACHES = {
         *(rf"slider 3: {name}: Enter shows another picture than the mouse" for name in "ab"),
     ],
     "callbacks run": [r"RuntimeError: seen by the kernel alone"],
-    "fits a laptop": [r"cell 6: 20\d\d px wide, \d+ px are there"],
+    "fits a laptop": [r"cell 5: 1\d\d px wide, 80 px are there", r"cell 6: 20\d\d px wide, \d+ px are there"],
     "fits a phone": [r"cell 5: 3\d\d px wide, \d+ px are there", r"cell 6: 2000 px wide, \d+ px are there"],
 }
 

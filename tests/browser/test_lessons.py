@@ -18,6 +18,7 @@ PRESSES = 24  # measured key presses for each lesson
 UNBEARABLE = 1000  # ms: far above what is measured, as the machine may be busy
 
 ARROWS = ("ArrowRight", "ArrowRight", "ArrowLeft", "End", "Home")
+PANEL = ".jupyter-widgets, .widget-label"  # a name that is too long is cut off
 SLIDER_CELL = re.compile(r"pk\.widgets\.\w+\(\)")
 ERRORS = '[data-mime-type="application/vnd.jupyter.error"], [data-mime-type="application/vnd.jupyter.stderr"]'
 
@@ -93,13 +94,13 @@ def callbacks_run(lesson):
 def fits_a_laptop(lesson):
     """Nothing is cut off or scrolls sideways at the width of a laptop."""
     lesson.widen(WIDE)
-    yield from too_wide(lesson.page, ".jp-OutputArea-output, .jupyter-widgets, .jp-RenderedMarkdown")
+    yield from too_wide(lesson.page, f"{PANEL}, .jp-OutputArea-output, .jp-RenderedMarkdown")
 
 
 def fits_a_phone(lesson):
     """No slider and no plot is cut off or scrolls sideways at the width of a phone; tables and twins may."""
     lesson.widen(NARROW)
-    yield from too_wide(lesson.page, ".jupyter-widgets, .jp-RenderedImage")
+    yield from too_wide(lesson.page, f"{PANEL}, .jp-RenderedImage")
 
 
 TOO_WIDE = """(cells, selector) => cells.flatMap((cell, number) =>

@@ -4,7 +4,7 @@ import pytest
 
 from .lab import TOKEN
 from .panel import panels
-from .test_lessons import NARROW, WIDE, too_wide
+from .test_lessons import NARROW, PANEL, WIDE, too_wide
 
 LESSON = "01_see_with_rays"
 
@@ -46,4 +46,4 @@ def test_it_fits(page, panel, width, screenshots):
     if screenshots:
         panel.root.scroll_into_view_if_needed()
         page.screenshot(path=screenshots / f"voila_{width}.png")
-    assert too_wide(page, ".jupyter-widgets, .jp-RenderedImage, img") == []
+    assert too_wide(page, f"{PANEL}, .jp-RenderedImage, img") == []
