@@ -37,7 +37,10 @@ _STORY = {
     "steps": ("Steps",),
     "pipeline": ("find_shapes", "Settings", "PAPER", "ROBUST"),
     "evaluation": ("evaluate", "match", "Report"),
-    "formats": ("load_world", "save_world", "load_scans", "save_scans", "paper_suite"),
+    "formats": (
+        *("load_world", "save_world", "load_scans", "save_scans"),
+        *("Drive", "record_drive", "load_drive", "save_drive", "paper_suite"),
+    ),
     "study": ("run_study", "tables"),
     "plots": ("plot_world", "plot_scan", "plot_points", "plot_clusters", "plot_found", "plot_story", "save_figure"),
 }
@@ -67,7 +70,17 @@ if TYPE_CHECKING:
     from . import checks, widgets
     from .circles import find_circle, fit_circle
     from .evaluation import Report, evaluate, match
-    from .formats import load_scans, load_world, paper_suite, save_scans, save_world
+    from .formats import (
+        Drive,
+        load_drive,
+        load_scans,
+        load_world,
+        paper_suite,
+        record_drive,
+        save_drive,
+        save_scans,
+        save_world,
+    )
     from .grid import Grid
     from .lidar import Lidar, Scans, scan, scan_blocks
     from .lines import Line, find_lines, fit_line

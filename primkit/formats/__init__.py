@@ -1,10 +1,11 @@
-"""Formats: maps, results and scans, to files and back.
+"""Formats: maps, results, scans and drives, to files and back.
 
 Beside the story: every noun can be put on the shelf between two steps, and what is read back is equal to
 the last bit.
 
-In:  a ``World`` (a map, or what was found, with properties for each shape) or ``Scans``, and a file's name.
-Out: GeoJSON (``.geojson``, ``.json``) for worlds, compressed NumPy arrays (``.npz``) for scans.
+In:  a ``World`` (a map, or what was found, with properties for each shape), ``Scans`` or a ``Drive``; a file's name.
+Out: GeoJSON (``.geojson``, ``.json``) for worlds, compressed NumPy arrays (``.npz``) for scans, JSON Lines (``.jsonl``)
+     for drives.
 
 >>> import tempfile
 >>> from primkit.world import random_world
@@ -14,17 +15,20 @@ Out: GeoJSON (``.geojson``, ``.json``) for worlds, compressed NumPy arrays (``.n
 ...     load_world(f"{folder}/map.geojson") == world
 True
 
-A file is written whole or not at all, and a file that is not what it says is refused in one sentence that
-begins with its name. The rooms, each of which imports only those before it:
+A file is written whole or not at all, apart from a drive's journal, which grows scan by scan. A file that is not
+what it says is refused in one sentence that begins with its name. The rooms, each of which imports only those
+before it:
 
 =============  ==============================================================
 ``files.py``   whole or not at all; endings, limits, and sentences with names
 ``maps.py``    worlds as GeoJSON
 ``suite.py``   the paper's 34 maps
 ``scans.py``   scans as NumPy arrays
+``drives.py``  drives as JSON Lines, one scan after the other
 =============  ==============================================================
 """
 
+from .drives import DRIVE_ENDINGS, DRIVE_LIMIT, Drive, DriveJournal, load_drive, record_drive, save_drive
 from .files import StrPath, write_atomically
 from .maps import MAP_ENDINGS, MAP_LIMIT, load_world, save_world
 from .scans import SCAN_ENDINGS, SCANS_LIMIT, load_scans, save_scans
@@ -37,10 +41,17 @@ __all__ = [
     "make_paper_suite",
     "load_scans",
     "save_scans",
+    "Drive",
+    "DriveJournal",
+    "record_drive",
+    "save_drive",
+    "load_drive",
     "write_atomically",
     "StrPath",
     "MAP_ENDINGS",
     "MAP_LIMIT",
     "SCAN_ENDINGS",
     "SCANS_LIMIT",
+    "DRIVE_ENDINGS",
+    "DRIVE_LIMIT",
 ]
