@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 from .arguments import as_points, as_positive
 from .lidar import Scans
 
-# 0.29 m / 0.001 m must be cell 290, not 289: a point this close (in cells) below a border is on it.
+# 0.043 / 0.001 is 42.99999999999999 and must be cell 43: a point this close (in cells) below a border is on it.
 ON_BORDER = 1e-9
 # Cells are packed into one whole number, 31 bits each way: a board of 1 mm cells up to 2,000 km wide.
 HALF = 1 << 30
@@ -82,8 +82,8 @@ class Grid:
 
         Examples
         --------
-        >>> Grid(0.001).to_cells([(0.1, 0.1), (-0.0004, 0.29)]).tolist()
-        [[100, 100], [-1, 290]]
+        >>> Grid(0.001).to_cells([(0.1, 0.1), (-0.0004, 0.043)]).tolist()
+        [[100, 100], [-1, 43]]
         """
         with np.errstate(over="ignore"):  # infinitely many cells away is refused below
             cells = np.floor(as_points(points) / self.resolution + ON_BORDER)

@@ -35,7 +35,7 @@ CELLS = {  # point [m], resolution [m], cell
     "inside a cell": ((0.1004, 0.1006), 0.001, (100, 100)),
     "half-open: the upper border is the next cell's": ((0.101, 0.1), 0.001, (101, 100)),
     "just below the upper border": ((0.1009999, 0.1009999), 0.001, (100, 100)),
-    "0.29 / 0.001 is 289.99999999999994": ((0.29, 0.57), 0.001, (290, 570)),
+    "0.043 / 0.001 is 42.99999999999999": ((0.043, 0.57), 0.001, (43, 570)),
     "0.3 / 0.1 is 2.9999999999999996": ((0.3, 0.7), 0.1, (3, 7)),
     "negative: down, not towards zero": ((-0.0001, -0.0011), 0.001, (-1, -2)),
     "negative on a border": ((-0.1, -0.29), 0.001, (-100, -290)),
@@ -72,7 +72,7 @@ def test_to_points(cell, resolution, centre):
 
 @pytest.mark.parametrize("resolution", ["0.001", "0.0005", "0.002", "0.005", "0.01", "0.1"])
 def test_every_border_written_in_decimals_opens_its_cell(resolution):
-    """Whether the number is written (0.29), multiplied (290 * 0.001) or divided (290 / 1000)."""
+    """Whether the number is written (0.043), multiplied (43 * 0.001) or divided (43 / 1000)."""
     step = float(resolution)
     places = len(resolution.split(".")[1])
     k = np.arange(-3000, 3001)
