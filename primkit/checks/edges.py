@@ -164,7 +164,8 @@ def _judge_consensus(got: Any, expected: Any, args: tuple[Any, ...]) -> str | No
     points, threshold = args[0], args[1]
     wanted = "None" if expected is None else "a line (angle, offset) and True or False for each point"
     if expected is None or got is None:
-        return None if got is expected else f"got {shown(got)}, expected {wanted}"
+        missing = " (is there a return?)" if got is None else ""
+        return None if got is expected else f"got {shown(got)}, expected {wanted}{missing}"
     pair = got if isinstance(got, (tuple, list)) and len(got) == 2 else (None, None)
     own, mask = as_line(pair[0]), _mask(pair[1], len(points))
     if own is None or mask is None or not np.isfinite(own).all():
@@ -220,6 +221,10 @@ def _not_counting_the_boundary(points: Floats, line: Any, threshold: float) -> N
     return near(points, line, threshold - 2 * ROUNDING)
 
 
+def _outside(points: Floats, line: Any, threshold: float) -> NDArray[np.bool_]:
+    return ~near(points, line, threshold)
+
+
 def _without_a_line(cases: list[Case]) -> bool:
     """Tell whether nothing is off but what fixes no line."""
     return all(case.expected is None for case in cases if case.off)
@@ -254,13 +259,14 @@ def _y_on_x(points: Floats) -> Pair:
     return angle, float(points.mean(axis=0) @ (np.cos(angle), np.sin(angle)))
 
 
-def _by_svd(row: int, *, centred: bool) -> Any:
-    """Return a fit that takes the wrong direction, or forgets to centre."""
+def _by_svd(row: int, *, centred: bool = True, columns: bool = False) -> Any:
+    """Return a fit that takes the wrong direction, forgets to centre, or reads columns for rows."""
 
     def fit(points: Floats) -> Pair | None:
         if fitted(points) is None:
             return None
-        normal = np.linalg.svd(points - points.mean(axis=0) * centred)[2][row]
+        directions = np.linalg.svd(points - points.mean(axis=0) * centred)[2]
+        normal = (directions.T if columns else directions)[row]
         return float(np.arctan2(normal[1], normal[0])), float(normal @ points.mean(axis=0))
 
     return fit
@@ -285,6 +291,18 @@ line_through = Check(
             like=_through_with(lambda angle, offset, _p, _q: (angle, abs(offset))),
         ),
         Fault(
+            "The line lies on the other side of the origin: is the sign of n . p right?",
+            like=_through_with(lambda angle, offset, _p, _q: (angle, -offset)),
+        ),
+        Fault(
+            "Are x and y in the right places? np.arctan2 takes y first, then x.",
+            like=_through_with(lambda angle, offset, _p, _q: (np.pi / 2 - angle, offset)),
+        ),
+        Fault(
+            "A line is (angle, offset): the angle comes first.",
+            like=_through_with(lambda angle, offset, _p, _q: (offset, angle)),
+        ),
+        Fault(
             "The normal must have length 1: else the offset is no distance in metres.",
             like=_through_with(lambda angle, offset, p, q: (angle, offset * float(np.hypot(*(q - p))))),
         ),
@@ -304,6 +322,7 @@ inliers_of = Check(
         Fault("That is how many they are: asked for is True or False for each point.", when=_as_a_number),
         Fault("Those are the numbers of the inliers: asked for is True or False for each point.", when=_as_indices),
         Fault("A point exactly on the boundary is an inlier: < or <= ?", like=_not_counting_the_boundary),
+        Fault("Those are the points outside the band: is the comparison turned round?", like=_outside),
         Fault(
             "Points far away on one side are inliers: a signed distance below zero is small, but not near.",
             like=_near_with(lambda p, a, d: p @ (np.cos(a), np.sin(a)) - d),
@@ -329,8 +348,9 @@ fit_line = Check(
         Fault("That fits y = a x + b: it measures along y, and upright walls fail.", when=_least_squares_in_y),
         Fault(
             "That is the direction of most scatter, along the wall: the normal is across.",
-            like=_by_svd(0, centred=True),
+            like=_by_svd(0),
         ),
+        Fault("The directions are the rows of what svd returns, not its columns.", like=_by_svd(1, columns=True)),
         Fault("Is the mean subtracted before the directions are taken?", like=_by_svd(1, centred=False)),
     ),
 )

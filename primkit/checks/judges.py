@@ -113,7 +113,7 @@ def circle(tolerance: float = 1e-6) -> Judge:
     def judge(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None:
         mine, (x, y, r) = as_circle(got), as_circle(expected) or (0.0, 0.0, 0.0)
         if expected is None or got is None:
-            return None if got is expected else f"got {shown(got)}, expected {shown(expected)}"
+            return None if got is expected else f"got {shown(got)}, expected {shown(expected)}{_missing(got)}"
         if mine is None:
             return f"got {shown(got)}, expected a circle: its x, y and radius in metres"
         if not np.isfinite(mine).all():
@@ -133,7 +133,7 @@ def line(tolerance: float = 1e-6) -> Judge:
     def judge(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None:
         mine, wanted = as_line(got), as_line(expected)
         if wanted is None or got is None:
-            return None if got is expected else f"got {shown(got)}, expected {shown(expected)}"
+            return None if got is expected else f"got {shown(got)}, expected {shown(expected)}{_missing(got)}"
         if mine is None:
             return f"got {shown(got)}, expected a line: the angle of its normal and its offset"
         turn = float(np.remainder(mine[0] - wanted[0] + np.pi / 2, np.pi) - np.pi / 2)  # of undirected normals
@@ -181,6 +181,8 @@ def shown(value: Any) -> str:
 
     >>> shown(np.array([0.1, 1 / 3])), shown(np.pi), shown(np.arange(100))
     ('(0.1, 0.3333)', '3.142', 'array of shape (100,)')
+    >>> shown({(3, 3), (2, 0)}), shown(set())
+    ('{(2, 0), (3, 3)}', 'set()')
     """
     if isinstance(value, np.ndarray) and value.size > 12:
         return f"array of shape {value.shape}"
@@ -189,6 +191,8 @@ def shown(value: Any) -> str:
     if isinstance(value, (tuple, list)):
         inner = ", ".join(map(shown, value))
         text = f"[{inner}]" if isinstance(value, list) else f"({inner})"
+    elif isinstance(value, (set, frozenset)):
+        text = f"{{{', '.join(sorted(map(shown, value)))}}}" if value else "set()"
     elif isinstance(value, (float, np.floating)):
         return f"{float(value) + 0.0:.4g}"  # -0.0 as the 0 that it means
     elif isinstance(value, (int, np.integer)) or value is None:

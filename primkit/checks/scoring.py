@@ -205,6 +205,9 @@ def _scored(
     misses: bool = True,
     alarms: bool = True,
     together: bool = False,
+    all_found: bool = False,
+    sides_of_any: bool = False,
+    kind_first: bool = False,
 ) -> float:
     """Score; each option that is not at its default is a usual fault."""
 
@@ -213,11 +216,12 @@ def _scored(
 
     matched = [(found[f], true[t]) for f, t in pairs]
     counted = true if misses else [t for _, t in matched]
-    false_alarms = len(found) - len(pairs) if alarms else 0
-    center = [f.centroid - t.centroid for f, t in matched]
-    n_center = sum(float(np.hypot(*e)) <= tolerance for e in center) if together else sum(map(right, center))
+    false_alarms = (len(found) - (0 if all_found else len(pairs))) if alarms else 0
     same_kind = [(f, t) for f, t in matched if f.kind == t.kind]
-    n_dimension = sum(right(_dimension_errors(f, t, shift=shift)) for f, t in same_kind)
+    center = [f.centroid - t.centroid for f, t in (same_kind if kind_first else matched)]
+    n_center = sum(float(np.hypot(*e)) <= tolerance for e in center) if together else sum(map(right, center))
+    sized = matched if sides_of_any else same_kind
+    n_dimension = sum(right(_dimension_errors(f, t, shift=shift)) for f, t in sized)
     parts = (
         (len(same_kind), len(counted) + false_alarms),
         (n_center, len(counted) * (1 if together else 2)),
@@ -241,6 +245,8 @@ def _score_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     yield [a], [a, b], [(0, 0)], TOLERANCE  # one missed
     yield [b, a], [a], [(1, 0)], TOLERANCE  # one false alarm
     yield [], [a, b], [], TOLERANCE
+    square = Polygon([(-0.03, -0.03), (0.03, -0.03), (0.03, 0.03), (-0.03, 0.03)])
+    yield [a], [square], [(0, 0)], TOLERANCE  # of the wrong kind, with a radius as long as the sides
     n = 0
     while n < RANDOM_CASES:
         true = list(random_world(int(rng.integers(1, 5)), rng=rng).shapes)
@@ -302,6 +308,14 @@ weighted_accuracy = Check(
             like=_like(shift=False),
         ),
         Fault("x and y of a centre count separately.", like=_like(together=True)),
+        Fault("F counts false alarms alone: found shapes that stand in no pair.", like=_like(all_found=True)),
+        Fault(
+            "Sides and radii are compared across kinds: dimensions count only where the kind is right.",
+            like=_like(sides_of_any=True),
+        ),
+        Fault(
+            "Centres are compared only where the kind is right: they count for every pair.", like=_like(kind_first=True)
+        ),
         Fault("That is in per cent: a score goes from 0 to 1.", like=_like(weights=(40.0, 30.0, 30.0))),
     ),
 )

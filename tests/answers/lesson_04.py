@@ -135,11 +135,12 @@ def fit_by_slope(points):
     return math.atan2(1, -a), float(points.mean(axis=0) @ (-a, 1)) / math.hypot(a, 1)
 
 
-def fit_by_svd(row, centre=True):
+def fit_by_svd(row, centre=True, column=False):
     def fit(points):
         if len(np.unique(points, axis=0)) < 2:
             return None
-        normal = np.linalg.svd(points - points.mean(axis=0) * centre)[2][row]
+        directions = np.linalg.svd(points - points.mean(axis=0) * centre)[2]
+        normal = directions[:, row] if column else directions[row]
         return math.atan2(normal[1], normal[0]), float(normal @ points.mean(axis=0))
 
     return fit
@@ -219,7 +220,13 @@ ANSWERS = {
             "unsigned": (through_unsigned, "The offset has a sign"),
             "long normal": (through_long_normal, "The normal must have length 1"),
             "degrees": (through_degrees, "in radians, not in degrees"),
-            "nothing": (lambda p, q: None, "got None, expected (-1.571, -0.1)"),
+            "other side": (
+                lambda p, q: (line := through(p, q)) and (line[0], -line[1]),
+                "the other side of the origin",
+            ),
+            "x before y": (lambda p, q: (line := through(p, q)) and (math.pi / 2 - line[0], line[1]), "takes y first"),
+            "offset first": (lambda p, q: (line := through(p, q)) and line[::-1], "the angle comes first"),
+            "nothing": (lambda p, q: None, "got None, expected (-1.571, -0.1) (is there a return?)"),
         },
         "error": {"floats": (through_floats, "raised ZeroDivisionError")},
     },
@@ -230,6 +237,7 @@ ANSWERS = {
             "one-sided": (inliers_one_sided, "far away on one side"),
             "without offset": (inliers_without_offset, "Is the offset subtracted?"),
             "swapped": (inliers_swapped, "sine and cosine in the right places"),
+            "outside": (lambda p, line, t: ~near(p, line, t), "is the comparison turned round?"),
             "how many": (lambda p, line, t: near(p, line, t).sum(), "That is how many they are"),
             "which numbers": (lambda p, line, t: np.flatnonzero(near(p, line, t)), "the numbers of the inliers"),
             "nonzero": (lambda p, line, t: np.nonzero(near(p, line, t)), "the numbers of the inliers"),
@@ -243,6 +251,7 @@ ANSWERS = {
             "along y": (fit_by_slope, "it measures along y"),
             "direction": (fit_by_svd(0), "the normal is across"),
             "not centred": (fit_by_svd(1, centre=False), "Is the mean subtracted"),
+            "column": (fit_by_svd(1, column=True), "not its columns"),
             "always": (fit_always, "Fewer than two different points"),
             "ends": (fit_through_the_ends, "in "),
         },
@@ -256,6 +265,7 @@ ANSWERS = {
             "no refit": (with_faults(refit=False), "fit it to all its inliers"),
             "inliers of the sample": (with_faults(anew=False), "take them anew after the refit"),
             "never none": (never_none, "Where no two points differ"),
+            "nothing": (lambda p, t, n, rng: None, "is there a return?"),
             "line alone": (lambda p, t, n, rng: fitted(p), "expected a line (angle, offset) and True or False"),
             "all points": (
                 lambda p, t, n, rng: fitted(p) and (fitted(p), near(p, fitted(p), t)),

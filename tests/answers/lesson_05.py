@@ -153,7 +153,7 @@ ANSWERS = {
             "minus": (fit_with(lambda a, b, k: (-a, -b, np.sqrt(k + a * a + b * b))), "the centre is off by"),
             "a Circle": (lambda points: pk.fit_circle(points), "expected three numbers"),
             "in two parts": (lambda points: ((0.0, 0.0), 0.1), "expected three numbers"),
-            "never": (lambda points: None, "got None, expected"),
+            "never": (lambda points: None, "expected (0, 0, 0.1) (is there a return?)."),
         },
         "error": {"as many unknowns as points": (fit_by_solve, "must be square")},
     },

@@ -111,19 +111,33 @@ def side_errors(found, true):
 
 
 def marks(
-    found, true, pairs, tolerance, *, sided=abs, sides=side_errors, missed=True, alarms=True, per=1.0, w=(4, 3, 3)
+    found,
+    true,
+    pairs,
+    tolerance,
+    *,
+    sided=abs,
+    sides=side_errors,
+    missed=True,
+    alarms=True,
+    per=1.0,
+    w=(4, 3, 3),
+    paired=0,
+    kind_first=False,
+    any_kind=False,
 ):
     """Give each value of the truth a mark, one after the other, by looking up its partner."""
     partner = {t: found[f] for f, t in pairs}
-    shape, center, dimension = [0.0] * (len(found) - len(pairs) if alarms else 0), [], []
+    shape, center, dimension = [0.0] * (len(found) - len(pairs) + paired * len(pairs) if alarms else 0), [], []
     for t, truth in enumerate(true):
         mine = partner.get(t)
         if mine is None and not missed:
             continue
         shape.append(mine is not None and mine.kind == truth.kind)
-        center += [mine is not None and sided(mine.centroid[i] - truth.centroid[i]) <= tolerance for i in (0, 1)]
         same = mine is not None and mine.kind == truth.kind
-        errors = sides(mine, truth) if same else [np.inf] * len(truth.dimensions)
+        there = same if kind_first else mine is not None
+        center += [there and sided(mine.centroid[i] - truth.centroid[i]) <= tolerance for i in (0, 1)]
+        errors = sides(mine, truth) if same or (any_kind and mine is not None) else [np.inf] * len(truth.dimensions)
         dimension += [sided(e) <= tolerance for e in errors]
     parts = [sum(part) / len(part) if part else 0.0 for part in (shape, center, dimension)]
     return per * sum(a * b for a, b in zip(w, parts, strict=True)) / sum(w)
@@ -135,6 +149,12 @@ def wrong(**fault):
 
 def in_list_order(found, true):
     return np.subtract(found.dimensions, true.dimensions)
+
+
+def across_kinds(found, true):
+    """NumPy subtracts a list of sides from a single radius without a word."""
+    same = found.kind == true.kind
+    return side_errors(found, true) if same else np.subtract(found.dimensions, true.dimensions)
 
 
 def by_distance(found, true, pairs, tolerance):
@@ -189,6 +209,9 @@ ANSWERS = {
             "list order": (wrong(sides=in_list_order), "in the order of the lists"),
             "distance": (by_distance, "x and y of a centre count separately"),
             "per cent": (wrong(per=100.0), "in per cent"),
+            "all found": (wrong(paired=1), "F counts false alarms alone"),
+            "across kinds": (wrong(any_kind=True, sides=across_kinds), "compared across kinds"),
+            "kind first": (wrong(kind_first=True), "they count for every pair"),
             "counted": (counted, "For example weighted_accuracy("),
             "nothing": (lambda found, true, pairs, tolerance: None, "is there a return?"),
         },
