@@ -85,6 +85,10 @@ to_cells = Check(
             "That is the cell's centre in metres: the number of the cell is asked for.",
             like=lambda points, resolution: (np.floor(points / resolution) + 0.5) * resolution,
         ),
+        Fault(
+            "That is the cell's centre counted in cells: without the half it is the cell's number.",
+            like=_by(lambda place: np.floor(place) + 0.5),
+        ),
         Fault("x and y have changed places: i counts along x.", like=_by(lambda place: np.floor(place)[:, ::-1])),
         Fault(
             "How many cells fit into that many metres? Divide by their size.",
@@ -207,6 +211,18 @@ occupy = Check(
         Fault(
             "x and y have changed places: x goes with the cosine.",
             like=_scan_with(lambda pose, angles, ranges: _around(pose[:2], np.pi / 2 - pose[2] - angles, ranges)),
+        ),
+        Fault(
+            "The heading is turned round: bearings count from it, so the two are added.",
+            like=_scan_with(lambda pose, angles, ranges: _around(pose[:2], angles - pose[2], ranges)),
+        ),
+        Fault(
+            "The bearings are turned round: they count from the heading, so the two are added.",
+            like=_scan_with(lambda pose, angles, ranges: _around(pose[:2], pose[2] - angles, ranges)),
+        ),
+        Fault(
+            "Angles are turned into degrees: sine and cosine take radians, and these are radians already.",
+            like=_scan_with(lambda pose, angles, ranges: _around(pose[:2], np.degrees(pose[2] + angles), ranges)),
         ),
         Fault("Cells below zero are wrong: int() cuts towards zero.", like=_cut),
         Fault(

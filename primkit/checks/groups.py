@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .answer import Case, Check, Fault
-from .judges import array, number, shown
+from .judges import _missing, array, number, shown
 
 Floats = NDArray[np.float64]
 Labels = NDArray[np.int64]
@@ -146,8 +146,10 @@ def _labels(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
         labels = np.asarray(got)
     except ValueError:  # rows of different lengths
         return f"got {shown(got)}, {kind}"
-    if labels.dtype.kind not in "iu":
-        return f"got {shown(got)}, {kind}"
+    if labels.dtype.kind == "f" and labels.shape == wanted.shape and (labels == np.round(labels)).all():
+        return f"got {shown(got)} as floats such as {float(labels[0])}, {kind}: only integers can number centres"
+    if labels.dtype.kind not in "iu" or labels.shape == ():
+        return f"got {shown(got)}, {kind}{_missing(got)}"
     if labels.shape != wanted.shape:
         return f"got an array of shape {labels.shape}, {kind}"
     if np.array_equal(labels, wanted):
@@ -170,9 +172,33 @@ def _shaped(shape_of: Callable[[Case], tuple[int, ...]]) -> Callable[[list[Case]
 
 def _nan_for_an_empty_group(cases: list[Case]) -> bool:
     """Tell whether exactly the groups without points have no number for a centre."""
-    if not all(isinstance(case.got, np.ndarray) and case.got.shape == case.args[2].shape for case in cases):
+    if not _shaped(lambda case: case.args[2].shape)(cases):
         return False
-    return all(np.array_equal(np.isnan(case.got).any(axis=1), _empty(case)) for case in cases)
+    return all(np.array_equal(_is_nan(case.got).any(axis=1), _empty(case)) for case in cases)
+
+
+def _is_nan(got: Any) -> NDArray[np.bool_]:
+    """Return where a result is NaN, and nowhere when it holds no numbers."""
+    values = np.asarray(got)
+    return np.isnan(values) if values.dtype.kind == "f" else np.zeros(values.shape, dtype=bool)
+
+
+def _nearest_along(axis: int) -> Any:
+    """Return the assignment that compares one coordinate only."""
+    return lambda points, centers: np.argmin(np.abs(points[:, [axis]] - centers[:, axis]), axis=1)
+
+
+def _one_number(cases: list[Case]) -> bool:
+    return all(isinstance(case.got, (int, np.integer)) for case in cases)
+
+
+def _least_distances(cases: list[Case]) -> bool:
+    """Tell whether the distances to the nearest centres came back, not the centres' numbers."""
+    if not _shaped(lambda case: (len(case.args[0]),))(cases):
+        return False
+    least = [_distances(*case.args).min(axis=1) for case in cases]
+    values = [np.asarray(case.got) for case in cases]
+    return all(v.dtype.kind == "f" and np.allclose(v, d) for v, d in zip(values, least, strict=True))
 
 
 def _empty(case: Case) -> NDArray[np.bool_]:
@@ -196,6 +222,19 @@ def _all_others(points: Floats, labels: Labels) -> float:
     apart, other = _distances(points, points), labels[:, None] != labels
     b = (apart * other).sum(axis=1) / other.sum(axis=1)
     return float(np.where(alone, 0.0, (b - a) / np.maximum(a, b)).mean())
+
+
+def _nearest_point(points: Floats, labels: Labels) -> float:
+    """Return the silhouette with b as the distance to the nearest point of another group."""
+    a, _, alone = _own_and_next(points, labels)
+    b = np.where(labels[:, None] != labels, _distances(points, points), np.inf).min(axis=1)
+    return float(np.where(alone, 0.0, _usual(a, b)).mean())
+
+
+def _lone_left_out(points: Floats, labels: Labels) -> float:
+    """Return the mean silhouette of the points that are not alone in their group."""
+    a, b, alone = _own_and_next(points, labels)
+    return float(_usual(a, b)[~alone].mean())
 
 
 def _with(score: Callable[[Floats, Floats], Any], itself: int = 1, lone: float = 0.0) -> Any:
@@ -235,14 +274,14 @@ assign_points = Check(
             "That distance is |dx| + |dy|, the way along streets: Pythagoras is shorter.",
             like=lambda p, c: np.argmin(np.abs(p[:, None] - c).sum(axis=2), axis=1),
         ),
-        Fault(
-            "Only x is compared: a distance has x and y in it.",
-            like=lambda p, c: np.argmin(np.abs(p[:, [0]] - c[:, 0]), axis=1),
-        ),
+        Fault("Only x is compared: a distance has x and y in it.", like=_nearest_along(0)),
+        Fault("Only y is compared: a distance has x and y in it.", like=_nearest_along(1)),
         Fault(
             "Those are the distances themselves: which centre has the least one?",
             when=_shaped(lambda case: (len(case.args[0]), len(case.args[1]))),
         ),
+        Fault("Those are the least distances: the number of the centre is asked for.", when=_least_distances),
+        Fault("That is one number for all points: along which axis is the least sought?", when=_one_number),
         Fault(
             "That is the nearest point of each centre: along which axis is the least sought?",
             when=_shaped(lambda case: (len(case.args[1]),)),
@@ -267,6 +306,11 @@ update_centers = Check(
             "A group without points is sent to (0, 0): its centre stays where it was.",
             like=_each(lambda own: own.mean(axis=0), np.zeros_like),
         ),
+        Fault(
+            "x and y are averaged together: a mean of positions goes along the points, axis=0.",
+            when=_shaped(lambda case: (len(case.args[2]),)),
+        ),
+        Fault("That is the sum: divide it by the number of points in it.", like=_each(lambda own: own.sum(axis=0))),
         Fault("That is the median; K-Means takes the mean.", like=_each(lambda own: np.median(own, axis=0))),
         Fault(
             "That is the middle between the outermost points; the mean counts every point.",
@@ -283,7 +327,10 @@ silhouette = Check(
     (
         Fault("A point alone in its group divides 0 by 0: its silhouette is 0.", when=_nan_for_a_lone_point),
         Fault("A point alone in its group counts as 1; by definition it counts as 0.", like=_with(_usual, lone=1.0)),
-        Fault("a counts the point itself, at distance 0: the mean goes over the others only.", like=_with(_usual, 0)),
+        Fault("a counts the point itself, at distance 0: the mean goes over the others.", like=_with(_usual, 0)),
+        Fault("a counts the point itself, at distance 0: the mean goes over the others.", like=_with(_usual, 0, 1.0)),
+        Fault("b is a mean over all points of a group, not the distance to the nearest point.", like=_nearest_point),
+        Fault("Points alone in their group count too, as 0: the mean goes over all points.", like=_lone_left_out),
         Fault("b is the mean distance to the nearest other group, not to all other points.", like=_all_others),
         Fault("The difference b - a is not yet divided by the larger of the two.", like=_with(lambda a, b: b - a)),
         Fault("The sign is turned round: near 1 is clearly apart.", like=_with(lambda a, b: -_usual(a, b))),

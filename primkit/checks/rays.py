@@ -101,8 +101,8 @@ def _circle_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
             yield origin, direction, center, radius
 
 
-def _without(condition: str) -> Any:
-    """Return the segment's hit with one of its conditions forgotten."""
+def _without(*forgotten: str) -> Any:
+    """Return the segment's hit with conditions forgotten."""
 
     def hit(origin: Floats, direction: Floats, a: Floats, b: Floats) -> float:
         side, to_a = b - a, a - origin
@@ -110,7 +110,21 @@ def _without(condition: str) -> Any:
         if cross == 0:
             return INF
         t, s = _cross(to_a, side) / cross, _cross(to_a, direction) / cross
-        return float(t) if (condition == "t" or t >= 0) and (condition == "s" or 0 <= s <= 1) else INF
+        return float(t) if ("t" in forgotten or t >= 0) and ("s" in forgotten or 0 <= s <= 1) else INF
+
+    return hit
+
+
+def _turned(sign_t: int, sign_s: int) -> Any:
+    """Return the segment's hit with a sign turned round in t or in s."""
+
+    def hit(origin: Floats, direction: Floats, a: Floats, b: Floats) -> float:
+        side, to_a = b - a, a - origin
+        cross = _cross(direction, side)
+        if cross == 0:
+            return INF
+        t, s = sign_t * _cross(to_a, side) / cross, sign_s * _cross(to_a, direction) / cross
+        return float(t) if t >= 0 and 0 <= s <= 1 else INF
 
     return hit
 
@@ -147,6 +161,21 @@ def _to_the_center(origin: Floats, direction: Floats, center: Floats, radius: fl
     return hit if hit == INF else float((center - origin) @ direction)
 
 
+def _from_the_center(origin: Floats, direction: Floats, center: Floats, radius: float) -> float:
+    """Return the hit with w from the centre to the robot, instead of from the robot to the centre."""
+    return hit_circle(center, direction, origin, radius)
+
+
+def _two_numbers(cases: list[Case]) -> bool:
+    """Tell whether two numbers came back, at least for the hits."""
+    wrong = [case.got for case in cases if case.off]
+    return all((isinstance(got, np.ndarray) and got.shape == (2,)) or _pair(got) for got in wrong)
+
+
+def _pair(got: Any) -> bool:
+    return isinstance(got, (tuple, list)) and len(got) == 2
+
+
 def _none_for_a_miss(cases: list[Case]) -> bool:
     """Tell whether all misses, and nothing else, came back as None."""
     misses = [case for case in cases if case.expected == INF]
@@ -169,6 +198,10 @@ ray_segment = Check(
     number("m"),
     (
         _NONE,
+        Fault("Two numbers came back: only t, the distance along the beam, is asked for.", when=_two_numbers),
+        Fault("When is there no hit? Neither t nor s is looked at yet.", like=_without("t", "s")),
+        Fault("The sign of t is turned round: v x w and w x v have opposite signs.", like=_turned(-1, 1)),
+        Fault("The sign of s is turned round: v x w and w x v have opposite signs.", like=_turned(1, -1)),
         Fault("Walls behind the robot are hit too: is t >= 0 asked for?", like=_without("t")),
         Fault("The wall is hit beyond its ends: is 0 <= s <= 1 asked for?", like=_without("s")),
         Fault("That is s, the place along the wall, and not t, the distance along the beam.", like=_share_of_side),
@@ -182,7 +215,9 @@ ray_circle = Check(
     number("m"),
     (
         _NONE,
-        Fault("A miss comes back as nan: is the number under the root below zero?", when=_nan_for_a_miss),
+        Fault("Two numbers came back: only the distance to the first hit is asked for.", when=_two_numbers),
+        Fault("Some misses come back as nan: is the number under the root below zero?", when=_nan_for_a_miss),
+        Fault("w is turned round: it goes from the robot to the centre, c minus origin.", like=_from_the_center),
         Fault("That is the far side of the circle: of the two roots, which one is met first?", like=_roots("far")),
         Fault("Circles behind the robot are hit too: is t >= 0 asked for?", like=_roots("behind")),
         Fault("From inside a circle the first root is negative and the second one counts.", like=_roots("near alone")),

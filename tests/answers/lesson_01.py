@@ -66,6 +66,16 @@ def segment_parallel(origin, direction, a, b):
     return t if t >= 0 and 0 <= s <= 1 else INF
 
 
+def segment_with(choose):
+    def hit(origin, direction, a, b):
+        matrix = np.column_stack([direction, a - b])
+        if abs(np.linalg.det(matrix)) < 1e-12:
+            return INF
+        return choose(*np.linalg.solve(matrix, a - origin))
+
+    return hit
+
+
 def segment_in_place(origin, direction, a, b):
     a -= origin
     b -= origin
@@ -134,6 +144,11 @@ ANSWERS = {
             "behind": (segment_behind, "Walls behind the robot"),
             "endless": (segment_endless, "beyond its ends"),
             "share": (segment_share, "That is s, the place along the wall"),
+            "point": (lambda origin, direction, a, b: (a + b) / 2, "Two numbers came back"),
+            "both": (segment_with(lambda t, s: (t, s)), "Two numbers came back"),
+            "always": (segment_with(lambda t, s: t), "Neither t nor s is looked at"),
+            "sign of t": (segment_with(lambda t, s: -t if t <= 0 <= s <= 1 else INF), "The sign of t"),
+            "sign of s": (segment_with(lambda t, s: t if t >= 0 and -1 <= s <= 0 else INF), "The sign of s"),
             "none": (segment_none, "must return float('inf'), not None"),
             "in place": (segment_in_place, "changes what it is given"),
             "by steps": (segment_by_steps, "For example ray_segment("),
@@ -156,6 +171,11 @@ ANSWERS = {
             "centre": (
                 circle_with(lambda near, far, along: along if far >= 0 else INF),
                 "half a chord earlier",
+            ),
+            "both roots": (lambda origin, direction, center, radius: (0.2, 0.4), "Two numbers came back"),
+            "from the centre": (
+                lambda origin, direction, center, radius: circle_by_formula(center, direction, origin, radius),
+                "w is turned round",
             ),
             "nan": (circle_nan, "under the root below zero"),
             "none": (circle_none, "must return float('inf'), not None"),

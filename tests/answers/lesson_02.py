@@ -128,6 +128,7 @@ ANSWERS = {
                 lambda points, resolution: (points // resolution + 0.5) * resolution,
                 "centre in metres",
             ),
+            "half further": (lambda points, resolution: points // resolution + 0.5, "centre counted in cells"),
             "y first": (lambda points, resolution: (points // resolution)[:, [1, 0]], "i counts along x"),
             "times": (lambda points, resolution: np.floor(points * resolution), "Divide by their size"),
             "flat": (lambda points, resolution: (points // resolution).ravel(), "expected shape (1, 2)"),
@@ -154,6 +155,17 @@ ANSWERS = {
             ),
             "no heading": (with_pose(lambda x, y, heading: (x, y, 0.0)), "angles count from its heading"),
             "no position": (with_pose(lambda x, y, heading: (0.0, 0.0, heading)), "add where it stands"),
+            "other heading": (with_pose(lambda x, y, heading: (x, y, -heading)), "The heading is turned round"),
+            "other bearing": (
+                lambda cells, pose, angles, *rest: occupy_by_turning(cells, pose, -angles, *rest),
+                "The bearings are turned round",
+            ),
+            "degrees": (
+                lambda cells, pose, angles, *rest: occupy_by_turning(
+                    cells, np.array([*pose[:2], math.degrees(pose[2])]), np.degrees(angles), *rest
+                ),
+                "these are radians already",
+            ),
             "sine for x": (occupy_with_sine, "x goes with the cosine"),
             "cut": (occupy_cut, "int() cuts towards zero"),
             "a list": (

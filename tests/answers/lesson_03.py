@@ -113,6 +113,20 @@ def silhouette_to_centers(points, labels):
     return float(np.mean(values))
 
 
+def silhouette_to_nearest(points, labels):
+    values = []
+    for i, label in enumerate(labels):
+        away = np.linalg.norm(points - points[i], axis=1)
+        own = labels == label
+        values.append(usual(away[own].sum() / (own.sum() - 1), away[~own].min()) if own.sum() > 1 else 0.0)
+    return float(np.mean(values))
+
+
+def silhouette_of_the_others(points, labels):
+    values = silhouette_samples(points, labels)
+    return float(values[np.bincount(labels)[labels] > 1].mean())
+
+
 ANSWERS = {
     "assign_points": {
         "right": {
@@ -131,9 +145,12 @@ ANSWERS = {
             "in place": (assign_in_place, "changes what it is given"),
             "the least distance": (
                 lambda points, centers: distances(points, centers).min(axis=1),
-                "whole numbers from",
+                "the number of the centre is asked for",
             ),
-            "no return": (lambda points, centers: None, "got None"),
+            "only y": (lambda points, centers: assign_by_tree(points * [0, 1], centers * [0, 1]), "Only y is compared"),
+            "one for all": (lambda points, centers: distances(points, centers).argmin(), "one number for all points"),
+            "floats": (lambda points, centers: assign_by_tree(points, centers).astype(float), "floats such as 0.0"),
+            "no return": (lambda points, centers: None, "is there a return?"),
         },
         "error": {"one shape": (lambda points, centers: (points - centers).argmin(axis=1), "ValueError")},
     },
@@ -151,6 +168,12 @@ ANSWERS = {
                 lambda points, labels, centers: np.array([mean(points[labels == j]) for j in np.unique(labels)]),
                 "is left out",
             ),
+            "a list with nan": (
+                lambda points, labels, centers: [mean(points[labels == j]).tolist() for j in range(len(centers))],
+                "has no mean (0 / 0)",
+            ),
+            "no axis": (update_with(np.mean, np.mean), "averaged together"),
+            "sum": (update_with(lambda own: own.sum(axis=0), lambda c: c), "That is the sum"),
             "origin": (update_with(mean, np.zeros_like), "sent to (0, 0)"),
             "median": (update_with(lambda own: np.median(own, axis=0), lambda c: c), "That is the median"),
             "box": (
@@ -173,6 +196,9 @@ ANSWERS = {
             "centres": (silhouette_to_centers, "not to its centre"),
             "each point": (silhouette_samples, "one silhouette for each point"),
             "the farthest group": (silhouette_with(usual, next_group=max), "For example silhouette("),
+            "itself, alone too": (silhouette_with(usual, itself=0, lone=1.0), "counts the point itself"),
+            "the nearest point": (silhouette_to_nearest, "not the distance to the nearest point"),
+            "lone left out": (silhouette_of_the_others, "count too, as 0"),
         },
         "error": {"of nothing": (lambda points, labels: 1 / 0, "ZeroDivisionError")},
     },
