@@ -12,14 +12,14 @@ import sys
 import time
 from contextlib import contextmanager
 from pathlib import Path
-from urllib.error import URLError
 from urllib.request import urlopen
 
 from .panel import Panel, panels
 
 ROOT = Path(__file__).resolve().parents[2]
 LESSONS = [path.stem for path in sorted((ROOT / "notebooks").glob("*.ipynb"))]
-PATIENCE = 60  # s: for a server to come up, on a machine that is busy
+PATIENCE = 60  # s: for a server to come up, or a widget to answer, on a machine that is busy
+RUN_TIME = 300  # s: for all cells of a lesson
 TALLEST = 16_000  # px: browsers draw no taller picture
 
 SERVER = """
@@ -85,7 +85,7 @@ def _address(server, folder):
                 url = json.loads(path.read_text())["url"]
                 urlopen(f"{url}api?token={TOKEN}").close()
                 return url
-            except (ValueError, URLError):
+            except (ValueError, OSError):
                 pass  # not yet written to the end, or not yet listening
     raise RuntimeError(f"Jupyter did not come up; it says:\n{(folder / 'log.txt').read_text()}")
 
@@ -122,12 +122,25 @@ OPEN = """async (path) => {
     return { open, asked, said };
 }"""
 
+# Work in the page has an end here: the page itself would wait for ever.
+IN_TIME = """const inTime = (work, seconds) => Promise.race([work, new Promise((_, fail) =>
+    setTimeout(() => fail(new Error(`the kernel was not done after ${seconds} s`)), 1000 * seconds))]);"""
+
+RUN = f"""() => {{
+    {IN_TIME}
+    return inTime(window.jupyterapp.commands.execute("notebook:run-all-cells"), {RUN_TIME});
+}}"""
+
 # Cells and widgets have threads of their own in the kernel: a cell's end tells nothing of a slider's. When one move is
 # done, the next may be sent, so nothing may be open for two frames.
-SETTLE = """async ({ asked }) => {
+SETTLE = f"""({{ asked }}) => {{
+    {IN_TIME}
     const frame = () => new Promise((seen) => requestAnimationFrame(() => setTimeout(seen)));
-    for (let quiet = 0; quiet < 2; quiet = asked.size ? 0 : quiet + 1) await frame();
-}"""
+    const settled = async () => {{
+        for (let quiet = 0; quiet < 2; quiet = asked.size ? 0 : quiet + 1) await frame();
+    }};
+    return inTime(settled(), {PATIENCE});
+}}"""
 
 CLOSE = """async ({ open }) => {
     await open.sessionContext.shutdown();
@@ -142,7 +155,7 @@ class Lesson:
     def __init__(self, page, name: str, slider_cells: int) -> None:
         self.page, self.name, self.slider_cells = page, name, slider_cells
         self._handle = page.evaluate_handle(OPEN, f"{name}.ipynb")
-        page.evaluate("window.jupyterapp.commands.execute('notebook:run-all-cells')")
+        page.evaluate(RUN)
         self.settle()
         self.said(anew=True)  # while it opens, the kernel speaks of widgets that are not yet there
         self.panels: list[Panel] = panels(page, slider_cells, self.settle)
