@@ -128,25 +128,33 @@ def diagram() -> Picture:
     n, u = line.normal, line.direction
     foot, p = line.offset * n, line.offset * n - 0.16 * u + 0.09 * n
     inliers = foot + np.outer([-0.27, -0.21, 0.05, 0.11, 0.17], u) + np.outer([0.02, -0.03, 0.015, -0.02, 0.03], n)
+    on_line, turn = foot + 0.16 * u, np.linspace(0, line.angle, 30)
     frame = Frame((-0.14, 0.41), (-0.05, 0.35), width=525, height=402)
     svg = picture(
         frame,
         _band(frame, line, t, SKY),
         _across(frame, line, BLUE, 3),
+        frame.segments([on_line], [on_line + t * n], INK, 2),
+        frame.segments([(0, 0)], [(0.11, 0)], GREY, 1.5, "5 4"),
+        frame.polyline(0.05 * np.column_stack([np.cos(turn), np.sin(turn)]), INK, 1.5),
         frame.segments([(0, 0)], [foot], INK, 1.5, "5 4"),
         frame.segments([(0, 0)], [0.1 * n], VERMILION, 5),
         frame.segments([p], [p - 0.09 * n], ORANGE, 3),
         frame.points([(0, 0)], INK, "square", 8),
         frame.points(inliers, BLUE, size=8),
         frame.points([p], ORANGE, "ring", 13),
-        frame.text((0, 0), "origin", GREY, shift=(12, 14), size=14),
+        frame.text((0, 0), "origin", GREY, "end", (-8, 16), 14),
+        frame.text((0.05, 0.015), "θ", INK, shift=(6, 0), size=16),
+        frame.text((0.11, 0), "parallel to x", GREY, shift=(5, 5), size=13),
+        frame.text(on_line + 0.5 * t * n, "t", INK, shift=(7, 6), size=16),
         frame.text(0.06 * n, "n (drawn short)", VERMILION, shift=(14, 6), size=14),
         frame.text(0.17 * n, "d", INK, shift=(-20, 0), size=16),
         frame.text(p, "p", INK, shift=(10, -8), size=16),
-        frame.text(p - 0.045 * n, "|n · p - d|", ORANGE, shift=(12, 8), size=15),
+        frame.text(p - 0.045 * n, "|n · p - d|", INK, shift=(12, 8), size=15),
         frame.text((0.12, 0.25), "the band: at most t away", BLUE, size=14),
         title="A line is a direction across it, and an offset",
-        says="A line with its normal n and its offset d from the origin; five points lie in the band, and p does not.",
+        says="A line with its normal n at the bearing θ and its offset d from the origin; five points lie in the band "
+        "of t to each side, and p does not.",
     )
     return Picture(svg, "Diagram: a line in normal form, and its band")
 
