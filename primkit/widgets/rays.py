@@ -40,7 +40,7 @@ def rays() -> Explorer:
         Slider("y", -0.45, 0.45, 0.01, start=0.0, unit="m"),
         Slider("heading", 0, 355, 5, start=0, unit="degrees"),
         settings={
-            "as in the paper": {},
+            "as it starts": {},
             "few beams": {"beams": 24, "reach": 0.5},
             "noisy": {"noise": 10.0, "reach": 0.5},
             "far sight": {"reach": 1.0, "beams": 360},
@@ -83,29 +83,29 @@ def _says(beams: int, n: int, ranges: NDArray[np.float64], reach: float, noise: 
 
 
 def diagram() -> Picture:
-    """Return the drawing behind the lesson's formula: where the beam p + t u meets the wall a + s (b - a)."""
-    p, u, a, b = np.array([[0.05, 0.05], [0.8, 0.6], [0.19, 0.33], [0.44, 0.08]])
-    t, s = np.linalg.solve(np.column_stack([u, a - b]), a - p)  # p + t u = a + s (b - a)
-    hit = p + t * u
+    """Return the drawing behind the lesson's formula: where the beam q + t u meets the wall a + s (b - a)."""
+    q, u, a, b = np.array([[0.05, 0.05], [0.8, 0.6], [0.19, 0.33], [0.44, 0.08]])
+    t, s = np.linalg.solve(np.column_stack([u, a - b]), a - q)  # q + t u = a + s (b - a)
+    hit = q + t * u
     frame = Frame((0.0, 0.55), (0.0, 0.4), width=525, height=402)
     svg = picture(
         frame,
-        frame.segments([p], [p + 0.6 * u], PALE, 1.5, "5 4"),
+        frame.segments([q], [q + 0.6 * u], PALE, 1.5, "5 4"),
         frame.segments([a], [b], INK, 4),
         frame.segments([a], [a + s * (b - a)], BLUE, 4),
-        frame.segments([p], [hit], ORANGE, 3),
-        frame.segments([p], [p + 0.1 * u], VERMILION, 5),
+        frame.segments([q], [hit], ORANGE, 3),
+        frame.segments([q], [q + 0.1 * u], VERMILION, 5),
         frame.points([hit], VERMILION, "ring", 14),
         frame.points([a, b], INK, "square", 8),
-        frame.robot([*p, np.arctan2(u[1], u[0])]),
-        frame.text(p, "p", shift=(-4, 24), size=16),
-        frame.text(p + 0.1 * u, "u (length 1, drawn short)", VERMILION, shift=(6, 14), size=14),
-        frame.text(p + 0.21 * u, "t u", INK, "end", (-8, -6), 16),
+        frame.robot([*q, np.arctan2(u[1], u[0])]),
+        frame.text(q, "q", shift=(-4, 24), size=16),
+        frame.text(q + 0.1 * u, "u (length 1, drawn short)", VERMILION, shift=(6, 14), size=14),
+        frame.text(q + 0.21 * u, "t u", INK, "end", (-8, -6), 16),
         frame.text(a, "a", shift=(-20, -2), size=16),
         frame.text(b, "b", shift=(10, 14), size=16),
         frame.text(a + 0.6 * s * (b - a), "s (b - a)", BLUE, shift=(8, -10), size=16),
         frame.text(hit, "hit", GREY, shift=(14, 2), size=14),
         title="Two ways to the same point",
-        says=f"From p the beam goes {t:.2g} m along u; from a it is {s:.2g} of the way to b: both end at the hit.",
+        says=f"From q the beam goes {t:.2g} m along u; from a it is {s:.2g} of the way to b: both end at the hit.",
     )
     return Picture(svg, "Diagram: a beam meets a wall")
