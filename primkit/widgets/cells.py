@@ -28,6 +28,7 @@ STOPS = 40
 WINDOW = 0.38  # m: the piece of the board that is seen
 LINED = 4  # mm: smaller cells are dots, without borders
 LOST = 0.5  # m: a circle larger than this is none that a student could look for
+BORDERS = (-0.06, -0.04, -0.02, 0.0, 0.02, 0.04, 0.06, 0.08)  # m: of the diagram's cells
 CENTER, CORNER = "its centre", "its corner"
 
 
@@ -142,7 +143,7 @@ def _numbers(ends: tuple[float, float], side: float) -> range:
 def diagram() -> Picture:
     """Return the drawing behind the lesson's formulas: from a range to a hit, to its cell, to the cell's centre."""
     side, pose, beam, reach = 0.02, np.array([-0.03, -0.017, np.radians(14)]), np.radians(17), 0.078
-    frame = Frame((-0.06, 0.08), (-0.04, 0.06), width=565, height=425)
+    frame = Frame((-0.06, 0.08), (-0.04, 0.06), width=565, height=425, x_ticks=BORDERS, y_ticks=BORDERS[1:7])
     ahead, along = (np.array([np.cos(a), np.sin(a)]) for a in (pose[2], pose[2] + beam))
     hit = pose[:2] + reach * along
     cell = Grid(side).to_cells([hit])
@@ -166,7 +167,7 @@ def diagram() -> Picture:
         frame.points([center], INK, "cross", 10),
         frame.points([hit], VERMILION, "dot", 9),
         frame.robot(pose),
-        frame.text(pose[:2], "x", shift=(-16, 18), size=16),
+        frame.text(pose[:2], "q", shift=(-16, 18), size=16),
         frame.text(arcs[0][len(arcs[0]) // 2], "θ", shift=(5, 6), size=16),
         frame.text(arcs[1][len(arcs[1]) // 2], "β", shift=(6, 2), size=16),
         frame.text(pose[:2] + 0.6 * reach * along, "r", shift=(-16, -8), size=16),
@@ -174,7 +175,7 @@ def diagram() -> Picture:
         frame.text(center, "centre", INK, shift=(-2, -10), anchor="middle", size=13),
         title="From a range to a hit, to a cell, to its centre",
         says=(
-            "From the pose x the beam goes r along the heading θ plus the bearing β; "
+            "From the robot's place q the beam goes r along the heading θ plus the bearing β; "
             f"its hit p lies in cell {tuple(cell[0].tolist())} and is read at this cell's centre."
         ),
     )
