@@ -39,9 +39,9 @@ _STORY = {
     "evaluation": ("evaluate", "match", "Report"),
     "formats": (
         *("load_world", "save_world", "load_scans", "save_scans"),
-        *("Drive", "record_drive", "load_drive", "save_drive", "paper_suite"),
+        *("Drive", "record_drive", "load_drive", "save_drive", "paper_suite", "scripted_drives"),
     ),
-    "study": ("run_study", "tables"),
+    "study": ("run_study", "tables", "scripted_route"),
     "plots": ("plot_world", "plot_scan", "plot_points", "plot_clusters", "plot_found", "plot_story", "save_figure"),
 }
 # Rooms that are used by their own name: pk.widgets.rays(), pk.checks.ray_segment(mine).
@@ -80,6 +80,7 @@ if TYPE_CHECKING:
         save_drive,
         save_scans,
         save_world,
+        scripted_drives,
     )
     from .grid import Grid
     from .lidar import Lidar, Scans, scan, scan_blocks
@@ -93,5 +94,5 @@ if TYPE_CHECKING:
     from .segmentation import count_by_silhouette, kmeans, link, segment
     from .shapes import Circle, Polygon
     from .steps import Steps
-    from .study import run_study, tables
+    from .study import run_study, scripted_route, tables
     from .world import World, random_world

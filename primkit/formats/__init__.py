@@ -5,7 +5,7 @@ the last bit.
 
 In:  a ``World`` (a map, or what was found, with properties for each shape), ``Scans`` or a ``Drive``; a file's name.
 Out: GeoJSON (``.geojson``, ``.json``) for worlds, compressed NumPy arrays (``.npz``) for scans, JSON Lines (``.jsonl``)
-     for drives.
+     for drives, JSON (``.json``) for the ways they went.
 
 >>> import tempfile
 >>> from primkit.world import random_world
@@ -22,23 +22,28 @@ before it:
 =============  ==============================================================
 ``files.py``   whole or not at all; endings, limits, and sentences with names
 ``maps.py``    worlds as GeoJSON
-``suite.py``   the paper's 34 maps
 ``scans.py``   scans as NumPy arrays
+``values.py``  what stands in a JSON text by a stranger
 ``drives.py``  drives as JSON Lines, one scan after the other
+``routes.py``  how the wheels turned on a drive, as JSON
+``suite.py``   the paper's 34 maps, and a scripted drive on each
 =============  ==============================================================
 """
 
 from .drives import DRIVE_ENDINGS, DRIVE_LIMIT, Drive, DriveJournal, load_drive, record_drive, save_drive
 from .files import StrPath, write_atomically
 from .maps import MAP_ENDINGS, MAP_LIMIT, load_world, save_world
+from .routes import ROUTE_ENDINGS, ROUTE_LIMIT, Route, load_route, save_route
 from .scans import SCAN_ENDINGS, SCANS_LIMIT, load_scans, save_scans
-from .suite import make_paper_suite, paper_suite
+from .suite import SUITE_SEED, make_paper_suite, paper_suite, scripted_drives
 
 __all__ = [
     "load_world",
     "save_world",
     "paper_suite",
     "make_paper_suite",
+    "scripted_drives",
+    "SUITE_SEED",
     "load_scans",
     "save_scans",
     "Drive",
@@ -46,6 +51,9 @@ __all__ = [
     "record_drive",
     "save_drive",
     "load_drive",
+    "Route",
+    "save_route",
+    "load_route",
     "write_atomically",
     "StrPath",
     "MAP_ENDINGS",
@@ -54,4 +62,6 @@ __all__ = [
     "SCANS_LIMIT",
     "DRIVE_ENDINGS",
     "DRIVE_LIMIT",
+    "ROUTE_ENDINGS",
+    "ROUTE_LIMIT",
 ]

@@ -24,11 +24,10 @@ Source: the form is JSON Lines, jsonlines.org.
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import asdict, dataclass, fields
-from math import inf, isfinite
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -37,6 +36,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..arguments import as_point, as_points, as_poses, check_type, short
 from ..lidar import Lidar, Scans
 from .files import StrPath, as_path, check_size, naming, read_whole, write_atomically
+from .values import numbers_in, parsed
 
 Floats = NDArray[np.float64]
 
@@ -44,7 +44,6 @@ DRIVE_ENDINGS = (".jsonl",)
 # Most of an hour with ten scans of 100 beams a second if all of them hit something, several hours otherwise.
 DRIVE_LIMIT = 64 * 2**20
 MOST_BEAMS = 100_000  # a short line may not ask for a scan that fills the memory
-MOST = sys.float_info.max
 FORMAT, VERSION = "primkit drive", 1
 
 
@@ -308,7 +307,7 @@ def _lidar_in(line: bytes) -> Lidar:
     """Return the sensor that the first line tells, or refuse a file that is no drive."""
     told = None
     with suppress(ValueError):
-        told = _parsed(line)
+        told = parsed(line)
     if not isinstance(told, dict) or told.get("format") != FORMAT:
         raise ValueError(f'must be a drive, its first line with "format": "{FORMAT}", got {short(line[:40])}')
     if told.get("version") != VERSION:
@@ -325,30 +324,8 @@ def _scans_in(lines: Iterator[bytes], lidar: Lidar) -> Iterator[tuple[list[float
     """Yield pose, wheels, ranges and inside of each line."""
     for number, line in enumerate(lines, start=2):
         with naming(f"line {number}"):
-            told = _parsed(line)
+            told = parsed(line)
             check_type(told, dict, "must be a scan")
             check_type(told.get("inside"), bool, "inside must be true or false")
-            pose, wheels = _numbers(told, "pose", 3), _numbers(told, "wheels", 2)
-            yield pose, wheels, _numbers(told, "ranges", lidar.beams, least=0.0), told["inside"]
-
-
-def _parsed(line: bytes) -> Any:
-    try:
-        return json.loads(line)
-    except (ValueError, RecursionError, MemoryError):  # no JSON, no UTF-8, a number of thousands of digits
-        raise ValueError(f"must be valid JSON, got {short(line[:40])}") from None
-
-
-def _numbers(told: dict[str, Any], name: str, n: int, least: float = -inf) -> list[float]:
-    """Return n finite numbers; where there is a least one, null stands for infinity."""
-    nothing = least > -inf
-    rule = f"{name} must be {n} finite numbers" + (f" >= {least:g}, or null for no hit" if nothing else "")
-    values = told.get(name)
-    if not isinstance(values, list) or len(values) != n:
-        raise ValueError(f"{rule}, got {f'{len(values)} of them' if isinstance(values, list) else short(values)}")
-    for value in values:
-        # Compared, not converted: a whole number may have hundreds of digits.
-        number = isinstance(value, (int, float)) and not isinstance(value, bool) and max(least, -MOST) <= value <= MOST
-        if not (number or (value is None and nothing)):
-            raise ValueError(f"{rule}, got {short(value)}")
-    return [inf if value is None else float(value) for value in values]
+            pose, wheels = numbers_in(told, "pose", 3), numbers_in(told, "wheels", 2)
+            yield pose, wheels, numbers_in(told, "ranges", lidar.beams, least=0.0), told["inside"]

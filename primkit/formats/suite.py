@@ -1,12 +1,14 @@
-"""Suite: the paper's 34 maps, as files, and the seeds they were drawn from.
+"""Suite: the paper's 34 maps, as files, the seeds they were drawn from, and a scripted drive on each.
 
-Out: ``World`` by name: one shape of each kind alone, then ten maps each of two, three and four shapes.
+Out: ``World`` by name: one shape of each kind alone, then ten maps each of two, three and four shapes; ``Route`` by
+     the same names.
 
 >>> suite = paper_suite()
 >>> len(suite), list(suite)[3:5], suite["1-pentagon"].shapes[0].kind
 (34, ['1-pentagon', '2-01'], 'pentagon')
 
-Source: the paper names the number of its maps and how they were drawn, and not the maps: these are drawn alike.
+Source: the paper names the number of its maps and how they were drawn, and not the maps: these are drawn alike. Of
+its manual drives it tells the times alone: these were steered by a script, ``study.scripted_route``, and by nobody.
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ import numpy as np
 from ..shapes import KINDS, Kind
 from ..world import World, random_world
 from .maps import load_world
+from .routes import Route, load_route
 
 SUITE_SEED = 34  # any number would do
 
@@ -43,6 +46,28 @@ def paper_suite() -> dict[str, World]:
     """
     folder = _data_folder() / "maps"
     return {name: load_world(folder / f"{name}.geojson") for name in _suite_plan()}
+
+
+def scripted_drives() -> dict[str, Route]:
+    """Return the 34 bundled drives: one on each map of ``paper_suite``, steered by a script.
+
+    Returns
+    -------
+    dict of str to Route
+        By the names of the maps, in their order; ``route.poses(world)`` is where the robot scans.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the drives are not where primkit is installed.
+
+    Examples
+    --------
+    >>> scripted_drives()["4-10"].poses(paper_suite()["4-10"]).shape[1]
+    3
+    """
+    folder = _data_folder() / "drives"
+    return {name: load_route(folder / f"{name}.json") for name in _suite_plan()}
 
 
 def make_paper_suite() -> dict[str, World]:

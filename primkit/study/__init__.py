@@ -26,6 +26,7 @@ The rooms, each of which imports only those before it:
 ``sweeps.py``      what the accuracy study changes, in which steps
 ``accuracy.py``    how right each method is at each step, the oracle beside it
 ``wander.py``      random drives among the shapes
+``scripted.py``    drives around one shape after the other
 ``views.py``       the shapes that a drive saw in part
 ``partial.py``     how right, and how honest, what was measured of them is
 ``together.py``    all of it, one after the other, and its files
@@ -44,6 +45,7 @@ from .oracle import ORACLE, Oracle, oracle_fit, told_points
 from .partial import PartialLine, PartialTable, run_partial
 from .published import PUBLISHED, rows_as_csv, tables, write_tables
 from .row import Row, Score
+from .scripted import make_scripted_drive, scripted_route
 from .sweeps import REMEDIES, SWEEPS, UNTUNED
 from .table import Line, Table
 from .together import accuracy_study
@@ -78,6 +80,8 @@ __all__ = [
     "told_points",
     "oracle_fit",
     "wander",
+    "scripted_route",
+    "make_scripted_drive",
     "Experiment",
     "Run",
     "run",

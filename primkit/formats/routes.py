@@ -1,0 +1,143 @@
+"""Routes: how the wheels were turned on a drive, without what was seen; small, and enough to drive it again.
+
+In:  a pose to start from, and the speeds of the wheels, one pair for each period.
+Out: a ``Route``, to and from JSON; on a board, the poses of the drive.
+
+>>> from primkit.world import World
+>>> Route((0, 0, 0), [(6, 6), (6, 6)]).poses(World()).round(4).tolist()
+[[0.0, 0.0, 0.0], [0.0123, 0.0, 0.0], [0.0246, 0.0, 0.0]]
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arguments import as_points, as_poses, as_positive, check_type, short
+from ..robot import FASTEST, PERIOD, drive
+from ..world import World
+from .files import StrPath, as_path, check_size, naming, read_whole, write_atomically
+from .values import numbers_in, parsed
+
+Floats = NDArray[np.float64]
+
+ROUTE_ENDINGS = (".json",)
+ROUTE_LIMIT = 2 * 2**20  # bytes: hours of driving
+FORMAT, VERSION = "primkit route", 1
+ON_A_LINE = 8  # pairs of speeds
+
+
+@dataclass(frozen=True, eq=False)
+class Route:
+    """How the wheels were turned on a drive.
+
+    Parameters
+    ----------
+    start : array_like, shape (3,)
+        x [m], y [m], heading [rad], world frame.
+    wheels : array_like, shape (T, 2)
+        Speeds of the left and the right wheel, radians per second, at most 6.28 either way.
+    period : float
+        How long each pair is held, seconds.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+
+    Examples
+    --------
+    >>> Route((0, 0, 0), [(7, 0)])
+    Traceback (most recent call last):
+        ...
+    ValueError: wheels must turn at 6.28 rad/s at most, got 7
+    """
+
+    start: Floats
+    wheels: Floats
+    period: float = PERIOD
+
+    def __post_init__(self) -> None:
+        start, wheels = as_poses(self.start), as_points(self.wheels, "wheels")
+        if len(start) != 1:
+            raise ValueError(f"start must be three finite numbers (x, y, heading), got {short(self.start)}")
+        if (fastest := np.abs(wheels).max(initial=0.0)) > FASTEST:
+            raise ValueError(f"wheels must turn at {FASTEST:g} rad/s at most, got {fastest:g}")
+        for name, value in (("start", start[0]), ("wheels", wheels), ("period", as_positive(self.period, "period"))):
+            object.__setattr__(self, name, value)
+
+    def poses(self, world: World) -> Floats:
+        """Return where the route leads on a board, shape (T + 1, 3): the start, and one pose after each period."""
+        return drive(world, self.wheels, self.start, period=self.period)
+
+    def __len__(self) -> int:
+        return len(self.wheels)
+
+
+def save_route(route: Route, path: StrPath) -> None:
+    """Write a route as JSON, whole or not at all.
+
+    Parameters
+    ----------
+    route : Route
+        How the wheels were turned.
+    path : str or path
+        The file, ending in ``.json``; one that is there already is replaced.
+
+    Raises
+    ------
+    ValueError
+        If the ending is another one, or the route is larger than ``load_route`` reads.
+    OSError
+        If the file cannot be written; the old one then stays as it was.
+    """
+    path = as_path(path, ROUTE_ENDINGS, "a route")
+    with naming(path.name):
+        check_type(route, Route, "must be a Route")
+        pairs = [json.dumps(pair) for pair in route.wheels.tolist()]
+        lines = [", ".join(pairs[i : i + ON_A_LINE]) for i in range(0, len(pairs), ON_A_LINE)]
+        head = json.dumps({"format": FORMAT, "version": VERSION, "period": route.period, "start": route.start.tolist()})
+        data = f'{head[:-1]},\n"wheels": [\n' + ",\n".join(lines) + "\n]}\n"
+        check_size(len(data), ROUTE_LIMIT)
+    write_atomically(path, data)
+
+
+def load_route(path: StrPath) -> Route:
+    """Read a route from JSON.
+
+    Parameters
+    ----------
+    path : str or path
+        The file, ending in ``.json``.
+
+    Raises
+    ------
+    ValueError
+        If the file is no route, or one of another version.
+    OSError
+        If there is no such file (``FileNotFoundError``), or it cannot be read.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     save_route(Route((0, 0, 0), [(1.5, 2)]), f"{folder}/route.json")
+    ...     load_route(f"{folder}/route.json").wheels.tolist()
+    [[1.5, 2.0]]
+    """
+    path = as_path(path, ROUTE_ENDINGS, "a route")
+    data = read_whole(path, ROUTE_LIMIT)
+    with naming(path.name):
+        told = parsed(data)
+        if not isinstance(told, dict) or told.get("format") != FORMAT:
+            raise ValueError(f'must be a route, with "format": "{FORMAT}", got {short(told)}')
+        if told.get("version") != VERSION:
+            raise ValueError(f"must be a route of version {VERSION}, got version {short(told.get('version'))}")
+        check_type(told.get("wheels"), list, "wheels must be a list of pairs")
+        wheels = [numbers_in({"each of the wheels": pair}, "each of the wheels", 2) for pair in told["wheels"]]
+        return Route(
+            np.array(numbers_in(told, "start", 3)), np.array(wheels), as_positive(told.get("period"), "period")
+        )

@@ -1,0 +1,274 @@
+"""Scripted: a driver for drives that nobody drove; it goes from shape to shape and around each, not too well.
+
+In:  a ``World`` that the driver looks at from above, as somebody beside the board does, and a seed.
+Out: a ``Route``: where the robot starts, and the speeds of its wheels.
+
+>>> from primkit.shapes import Circle
+>>> world = World([Circle((0.2, 0.1), 0.06)])
+>>> route = scripted_route(world, rng=0)
+>>> poses = route.poses(world)
+>>> bool(world.shapes[0].signed_distance(poses[:, :2]).min() > 0.037), bool(len(poses) > 60)
+(True, True)
+
+The driver plans by eye and steers by hand. It takes the nearest shape that is left, goes around it at a distance that
+wobbles, now and then leaves a part of it out, and does not get to where the robot has no room. Five times a second it
+looks where the robot is and sets the wheels for a place a little ahead on the way, never quite as it should. It knows
+neither scans nor map: whether everything was seen, it cannot tell.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arguments import as_rng, check_type
+from ..formats import SUITE_SEED, Route, paper_suite
+from ..robot import AXLE, FASTEST, PERIOD, WHEEL, advance, clearance, moved, start_pose
+from ..shapes import Shape
+from ..world import World
+
+Floats = NDArray[np.float64]
+
+# What the driver wants.
+DISTANCE = (0.09, 0.13)  # m from an outline to the robot's middle; the LiDAR measures from 0.05 to 0.3 m
+WOBBLE = 0.015  # m: how far the distance sways either way
+KEEP = 0.012  # m: the way keeps the body at least this far from everything
+CLOSE = 0.005  # m: nearer than this the driver does not go on towards anything
+BEARINGS = 60  # places around a shape
+LEFT_OUT = 0.4  # how often a part of a shape is left out
+PART = (0.3, 0.9)  # how much of the way around it that is
+# How it steers.
+SPEED = (4.8, 5.8)  # rad/s: of both wheels when it goes straight
+AHEAD = 0.05  # m: it looks at a place so far ahead on the way
+EAGER = 3.0  # 1/s: how fast it turns towards that place
+HOLD = 2  # periods from one look to the next
+SLOPPY = 0.25  # rad: standard deviation of its steering, which lasts for a while:
+LASTING = 0.8  # of its error, so much is left at the next look
+# How it plans.
+CELL = 0.01  # m: grid of the places that a way between two shapes may lead over
+MESH = 0.005  # m: places of a way that are looked at, and along the rays that search for a place beside a shape
+FAR = 0.6  # m: longest of these rays
+LONGEST = 20_000  # periods: half an hour; a drive that is not over by then never is
+
+
+def scripted_route(world: World, *, rng: int | np.random.Generator | None = None) -> Route:
+    """Return a drive around all shapes as a script steers it.
+
+    Parameters
+    ----------
+    world : World
+        What stands on the board.
+    rng : int or numpy.random.Generator, optional
+        Seed or generator.
+
+    Returns
+    -------
+    Route
+        From the free place nearest to the board's centre; speeds in steps of 0.01 rad/s. The robot touches nothing.
+
+    Raises
+    ------
+    ValueError
+        If the robot has no room on the board.
+
+    Examples
+    --------
+    Where there is nothing to see, it stays where it is:
+
+    >>> len(scripted_route(World(), rng=0))
+    0
+    """
+    check_type(world, World, "world must be a World")
+    generator = as_rng(rng)
+    start = start_pose(world)
+    return Route(start, _steered(world, start, _tour(world, start[:2], generator), generator))
+
+
+def make_scripted_drive(name: str) -> Route:
+    """Return the bundled drive on one of the suite's maps, steered anew from its seed.
+
+    As its file in ``data/drives`` has it: ``save_route`` writes the same bytes.
+
+    Examples
+    --------
+    >>> from primkit.formats import scripted_drives
+    >>> bool((make_scripted_drive("1-circle").wheels == scripted_drives()["1-circle"].wheels).all())
+    True
+    """
+    suite = paper_suite()
+    if name not in suite:
+        raise ValueError(f"name must be one of the suite's maps, {', '.join(suite)}, got {name!r}")
+    # The number of the map, as for the map itself, and one more: no draw of the drive is one of the map.
+    return scripted_route(suite[name], rng=np.random.default_rng([SUITE_SEED, list(suite).index(name) + 1, 1]))
+
+
+# --- the plan -----------------------------------------------------------------------------------------------
+
+
+def _tour(world: World, start: Floats, rng: np.random.Generator) -> Floats:
+    """Return the places that lead around one shape after the other, the nearest first, shape (N, 2)."""
+    board = _Board.of(world)
+    rings = [_ring(world, shape, rng) for shape in world.shapes]
+    way = [start]
+    while rings:
+        gaps = [np.nan_to_num(np.hypot(*(ring - way[-1]).T), nan=np.inf) for ring in rings]
+        nearest = int(np.argmin([gap.min() for gap in gaps]))
+        for place in _in_order(rings.pop(nearest), gaps[nearest], rng):
+            way += board.way(way[-1], place)
+    return _evenly(np.array(way), MESH)
+
+
+def _ring(world: World, shape: Shape, rng: np.random.Generator) -> Floats:
+    """Return places around a shape, shape (BEARINGS, 2); NaN where there is no room, or a part is left out."""
+    turns = np.linspace(0, 2 * np.pi, BEARINGS, endpoint=False)
+    phases, waves = rng.uniform(0, 2 * np.pi, 2), np.array([2, 3])
+    sway = np.sin(np.outer(turns, waves) + phases).mean(axis=1)
+    wanted = rng.uniform(*DISTANCE) + WOBBLE * sway
+    reach = np.arange(0, FAR, MESH)
+    rays = shape.centroid + reach[:, None] * np.column_stack([np.cos(turns), np.sin(turns)])[:, None]  # (K, R, 2)
+    away = shape.signed_distance(rays.reshape(-1, 2)).reshape(rays.shape[:2])
+    free = clearance(world, rays.reshape(-1, 2)).reshape(away.shape) >= KEEP
+    suits = free & (away <= wanted[:, None])
+    outermost = len(reach) - 1 - suits[:, ::-1].argmax(axis=1)
+    ring: Floats = np.where(suits.any(axis=1)[:, None], rays[np.arange(BEARINGS), outermost], np.nan)
+    if rng.random() < LEFT_OUT:
+        first, part = rng.integers(BEARINGS), rng.uniform(*PART)
+        ring[(first + np.arange(int(part * BEARINGS))) % BEARINGS] = np.nan
+    return ring
+
+
+def _in_order(ring: Floats, gaps: Floats, rng: np.random.Generator) -> Floats:
+    """Return the places of a ring in the order of driving, shape (N, 2).
+
+    All around from the nearest one, one way or the other; where a part is missing, from the nearer end to the other.
+    """
+    here = np.isfinite(gaps)
+    if not here.any():
+        return np.empty((0, 2))
+    if here.all():
+        first = int(np.argmin(gaps))
+        order = (first + np.arange(len(ring) + 1)) % len(ring)
+        return ring[order if rng.random() < 0.5 else order[::-1]]
+    first = _after_longest_gap(here)
+    order = (first + np.arange(len(ring))) % len(ring)
+    order = order[here[order]]
+    return ring[order if gaps[order[0]] <= gaps[order[-1]] else order[::-1]]
+
+
+def _after_longest_gap(here: NDArray[np.bool_]) -> int:
+    """Return the first place behind the longest run of missing ones.
+
+    >>> _after_longest_gap(np.array([True, False, True, False, False, True]))
+    5
+    """
+    present = np.flatnonzero(here)
+    return int(present[np.diff(present, prepend=present[-1] - len(here)).argmax()])
+
+
+@dataclass(frozen=True, eq=False)
+class _Board:
+    """The free places of a board on a grid, and how far it is from each to its neighbours."""
+
+    world: World
+    places: Floats  # (N, 2)
+    steps: object  # (N, N), sparse
+
+    @classmethod
+    def of(cls, world: World) -> _Board:
+        from scipy.sparse import coo_array
+        from scipy.spatial import cKDTree
+
+        half = np.floor(world.size / 2 / CELL)
+        lines = np.arange(-half, half + 1) * CELL
+        places = np.stack(np.meshgrid(lines, lines, indexing="ij"), axis=-1).reshape(-1, 2)
+        places = places[clearance(world, places) >= KEEP]
+        pairs = cKDTree(places).query_pairs(1.5 * CELL, output_type="ndarray")
+        lengths = np.hypot(*(places[pairs[:, 0]] - places[pairs[:, 1]]).T)
+        return cls(world, places, coo_array((lengths, pairs.T), shape=(len(places), len(places))).tocsr())
+
+    def way(self, start: Floats, end: Floats) -> list[Floats]:
+        """Return the places after the start that lead to the end; none where no way leads there."""
+        from scipy.sparse.csgraph import dijkstra
+
+        if self.sees(start, end):
+            return [end]
+        first, last = (int(np.hypot(*(self.places - place).T).argmin()) for place in (start, end))
+        _, before = dijkstra(self.steps, directed=False, indices=first, return_predecessors=True)
+        nodes = [last]
+        while nodes[-1] != first:
+            if before[nodes[-1]] < 0:
+                return []
+            nodes.append(int(before[nodes[-1]]))
+        return self._tight([start, *self.places[nodes[::-1]], end])
+
+    def _tight(self, way: list[Floats]) -> list[Floats]:
+        """Return the places after the first, without those that can be left out: from each, the last one in sight."""
+        kept, here = [], 0
+        while here < len(way) - 1:
+            seen = [k for k in range(here + 1, len(way)) if self.sees(way[here], way[k])]
+            here = max([here + 1, *seen])
+            kept.append(way[here])
+        return kept
+
+    def sees(self, start: Floats, end: Floats) -> bool:
+        """Tell whether the straight way between two places is free."""
+        return bool((clearance(self.world, _evenly(np.array([start, end]), MESH)) >= KEEP - MESH / 2).all())
+
+
+def _evenly(way: Floats, step: float) -> Floats:
+    """Return places along a way, at most a step apart, its own ones among them, shape (N, 2)."""
+    parts = [
+        a + (b - a) * np.linspace(0, 1, 1 + int(np.ceil(np.hypot(*(b - a)) / step)))[1:, None] for a, b in pairwise(way)
+    ]
+    return np.vstack([way[:1], *parts])
+
+
+# --- the steering -------------------------------------------------------------------------------------------
+
+
+def _steered(world: World, start: Floats, way: Floats, rng: np.random.Generator) -> Floats:
+    """Return the wheel speeds that bring the robot along a way, shape (T, 2)."""
+    pose, here, slip = start, 0, 0.0
+    wheels: list[tuple[float, float]] = []
+    ahead = round(AHEAD / MESH)
+    speed = WHEEL * rng.uniform(*SPEED)
+    while here < len(way) - 1 and len(wheels) < LONGEST:
+        here = _nearest(way, here, pose, ahead)
+        aim = way[min(here + ahead, len(way) - 1)]
+        slip = LASTING * slip + np.sqrt(1 - LASTING**2) * rng.normal(0, SLOPPY)
+        held = _set(world, pose, aim, speed, slip)
+        for _ in range(HOLD):
+            pose, _ = advance(world, pose, held, PERIOD)
+            wheels.append(held)
+    return np.array(wheels).reshape(-1, 2)
+
+
+def _nearest(way: Floats, here: int, pose: Floats, ahead: int) -> int:
+    """Return which place of the way the robot is at; it looks a little ahead only, so that no loop is cut short."""
+    window = way[here : here + ahead + 1]
+    return here + int(np.hypot(*(window - pose[:2]).T).argmin())
+
+
+def _set(world: World, pose: Floats, aim: Floats, speed: float, slip: float) -> tuple[float, float]:
+    """Return the wheel speeds towards a place: slower the more it must turn, on the spot where it would touch."""
+    x, y, heading = pose
+    off = float(np.arctan2(aim[1] - y, aim[0] - x) - heading + slip)
+    off = (off + np.pi) % (2 * np.pi) - np.pi
+    room = min(CLOSE, float(clearance(world, pose[None, :2])[0]))
+    for share in (1.0, 0.5, 0.25):
+        wheels = _wheels(share * speed * max(0.0, np.cos(off)), EAGER * off)
+        there = moved(pose, wheels, HOLD * PERIOD * np.array([0.5, 1.0]))
+        if clearance(world, there[:, :2]).min() >= room:
+            return wheels
+    return _wheels(0.0, EAGER * off)
+
+
+def _wheels(speed: float, turn: float) -> tuple[float, float]:
+    """Return the wheel speeds for a speed [m/s] and a turn [rad/s], rad/s, as far as the motors can."""
+    half = turn * AXLE / 2
+    left, right = (speed - half) / WHEEL, (speed + half) / WHEEL
+    most = max(1.0, abs(left) / FASTEST, abs(right) / FASTEST)
+    return round(left / most, 2), round(right / most, 2)
