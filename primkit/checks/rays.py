@@ -166,6 +166,17 @@ def _from_the_center(origin: Floats, direction: Floats, center: Floats, radius: 
     return hit_circle(center, direction, origin, radius)
 
 
+def _not_squared(origin: Floats, direction: Floats, center: Floats, radius: float) -> float:
+    """Return the circle's hit with the length of w under the root, instead of its square."""
+    to_center = center - origin
+    along = float(to_center @ direction)
+    under_root = radius**2 - (float(np.hypot(*to_center)) - along**2)
+    if under_root < 0:
+        return INF
+    root = float(np.sqrt(under_root))
+    return next((t for t in (along - root, along + root) if t >= 0), INF)
+
+
 def _two_numbers(cases: list[Case]) -> bool:
     """Tell whether two numbers came back, at least for the hits."""
     wrong = [case.got for case in cases if case.off]
@@ -218,6 +229,7 @@ ray_circle = Check(
         Fault("Two numbers came back: only the distance to the first hit is asked for.", when=_two_numbers),
         Fault("Some misses come back as nan: is the number under the root below zero?", when=_nan_for_a_miss),
         Fault("w is turned round: it goes from the robot to the centre, c minus origin.", like=_from_the_center),
+        Fault("Under the root stands the square of the length of w: is it squared?", like=_not_squared),
         Fault("That is the far side of the circle: of the two roots, which one is met first?", like=_roots("far")),
         Fault("Circles behind the robot are hit too: is t >= 0 asked for?", like=_roots("behind")),
         Fault("From inside a circle the first root is negative and the second one counts.", like=_roots("near alone")),

@@ -126,6 +126,13 @@ def circle_nan(origin, direction, center, radius):
     return float(near) if near >= 0 else float(far) if not far < 0 else INF
 
 
+def circle_not_squared(origin, direction, center, radius):
+    along = (center - origin) @ direction
+    under = radius**2 - math.dist(origin, center) + along**2
+    roots = [along - math.sqrt(under), along + math.sqrt(under)] if under >= 0 else []
+    return min((t for t in roots if t >= 0), default=INF)
+
+
 def circle_none(origin, direction, center, radius):
     t = circle_by_formula(origin, direction, center, radius)
     return None if t == INF else t
@@ -173,6 +180,7 @@ ANSWERS = {
                 "half a chord earlier",
             ),
             "both roots": (lambda origin, direction, center, radius: (0.2, 0.4), "Two numbers came back"),
+            "not squared": (circle_not_squared, "the square of the length of w"),
             "from the centre": (
                 lambda origin, direction, center, radius: circle_by_formula(center, direction, origin, radius),
                 "w is turned round",
