@@ -36,6 +36,7 @@ _STORY = {
     "measure": ("Detection", "measure_shape"),
     "steps": ("Steps",),
     "pipeline": ("find_shapes", "Settings", "PAPER", "ROBUST"),
+    "explorer": ("explore", "Exploration"),
     "evaluation": ("evaluate", "match", "Report"),
     "formats": (
         *("load_world", "save_world", "load_scans", "save_scans"),
@@ -70,6 +71,7 @@ if TYPE_CHECKING:
     from . import checks, widgets
     from .circles import find_circle, fit_circle
     from .evaluation import Report, evaluate, match
+    from .explorer import Exploration, explore
     from .formats import (
         Drive,
         load_drive,

@@ -34,6 +34,7 @@ ORDER = (
         "paper",
         "steps",
         "pipeline",
+        "explorer",
         "evaluation",
     ),
     *("formats", "study", "plots", "bench", "widgets", "checks", "__init__", "commands", "__main__"),
