@@ -226,8 +226,8 @@ def _half(points: Floats, labels: Labels, old: Floats, new: Floats, title: str) 
         frame.segments(old, new, INK, 2) if moved else "",
         frame.points(old, INK, "ring", 12) if moved else "",
         frame.points(new, INK, "square", 12),
-        frame.text(new[0], "c₁", shift=(9, -7), size=16),
-        frame.text(new[1], "c₂", shift=(2, 24), size=16),
+        frame.text(new[0], "c₀", shift=(9, -7), size=16),
+        frame.text(new[1], "c₁", shift=(2, 24), size=16),
         title=title,
         says=f"Centres at {np.round(new, 2).tolist()} m.",
     )
