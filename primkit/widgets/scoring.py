@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import ROUNDING
-from ..evaluation import CENTER_WEIGHT, SHAPE_WEIGHT, evaluate
+from ..evaluation import CENTER_WEIGHT, GATE, SHAPE_WEIGHT, evaluate
 from ..formats import paper_suite
 from ..lidar import Lidar
 from ..pipeline import PAPER, ROBUST
@@ -189,9 +189,12 @@ def _bar_of(weights: Weights) -> str:
 
 def diagram() -> Picture:
     """Return the drawing behind one-to-one matching: in list order the first found shape takes another's place."""
+    (one, _), (left, two) = 1000 * np.hypot(*(FOUND[:, None] - TRUE).T).T  # mm from each found to each true centre
+    beyond = f"found 2 to true A: {left:.0f} mm, beyond the gate of {1000 * GATE:.0f} mm"
+    least = f"{one:.0f} mm + {two:.0f} mm = {one + two:.0f} mm, the least for two pairs"
     panels = [
-        _pairing([(0, 1)], "First come: 1 match, 1 miss", "found 2 to true A: 109 mm, beyond the gate of 100 mm"),
-        _pairing([(0, 0), (1, 1)], "All together: both matched", "54 mm + 40 mm = 94 mm, the least for two pairs"),
+        _pairing([(0, 1)], "First come: 1 match, 1 miss", beyond),
+        _pairing([(0, 0), (1, 1)], "All together: both matched", least),
     ]
     captions = ["list order: 1 takes its nearest", "one-to-one, least in all"]
     return Picture(side_by_side(panels, captions), "Diagram: one-to-one matching, in list order and all together")
@@ -209,7 +212,7 @@ def _pairing(pairs: list[tuple[int, int]], title: str, note: str) -> str:
         parts.append(frame.segments([FOUND[1]], [TRUE[0]], VERMILION, 1.5, "4 4"))
     for start, end in zip(starts, ends, strict=True):
         apart = 1000 * float(np.hypot(*(start - end)))
-        side = ("end", (-8, -3)) if start[0] < end[0] else ("start", (9, 0))  # beside the line, not on it
+        side = ("end", (-16, 12)) if start[0] < end[0] else ("start", (9, 0))  # beside the line, not on it
         parts.append(frame.text((start + end) / 2, f"{apart:.0f} mm", BLUE, *side))
     parts += [frame.points(TRUE, INK, "square", 12), frame.points(FOUND, VERMILION, "cross", 12)]
     parts += [frame.text(p, f"true {name}", INK, "middle", (0, -12)) for p, name in zip(TRUE, "AB", strict=True)]
