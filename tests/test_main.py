@@ -55,7 +55,7 @@ HELP = {
     "": [
         "usage: primkit [-h] [--version] COMMAND ...",
         "map       simulate a board, map it, and compare with the truth",
-        "study     map many boards: the paper's Tables 1 and 2 beside ours",
+        "study     map many boards: the paper's Tables 1 to 4 beside ours",
         "make-map  write a random board to a GeoJSON file",
         "primkit make-map --shapes 6 --style free --out room.geojson",
     ],
@@ -73,6 +73,7 @@ HELP = {
     ],
     "study": [
         "GeoJSON files, or folders of them (default: the paper's 34 maps)",
+        "on way-points, or driven by a script, or both (default: automatic)",
         "the method: ours, as published, or both (default: both)",
         "number of processes (default: one on each core)",
         "dask cluster that does the work (default: this machine)",
@@ -246,6 +247,24 @@ def test_study_continues_or_starts_anew(capsys):
 def test_study_takes_files_too(capsys):
     assert main(["study", "--maps", "maps/two.json", "maps/one.geojson", "--settings", "robust", "--jobs", "1"]) == 0
     assert "Maps   2 with ROBUST" in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("maps")
+def test_study_drives(capsys):
+    words = ["study", "--maps", "maps", "--settings", "robust", "--jobs", "1", "--movement"]
+    assert main([*words, "manual"]) == 0
+    out, err = capsys.readouterr()
+    assert [line[:7] for line in out.splitlines() if line.startswith("Table")] == ["Table 3", "Table 4"]
+    assert "\nOurs were driven by a script" in out
+    assert re.search(r"\nseen on 60 % or more: 3 of 3 shapes, on 2 maps\n ROBUST within 5 mm  [01]\.\d{3} ", out)
+    names = ["table-3.csv", "table-4.csv", "rows.csv", "seen.csv", JOURNAL]
+    assert f"Wrote  {', '.join(str(Path('out', name)) for name in names)}\n" in out
+    assert len(Path("out/seen.csv").read_text(encoding="utf-8").splitlines()) == 4
+    assert (out.isascii(), err) == (True, "")
+    assert main([*words, "both"]) == 0
+    out, _ = capsys.readouterr()
+    assert [line[6:7] for line in out.splitlines() if line.startswith("Table")] == list("1234")
+    assert "Maps   2 with ROBUST; 2 of 4 results were in the journal already\n" in out
 
 
 def test_two_fresh_studies_agree_in_all_but_time(maps, tmp_path):

@@ -9,7 +9,7 @@ import primkit as pk
 from primkit import formats
 from primkit.formats import save_route, scripted_drives
 from primkit.robot import AXLE, FASTEST, WHEEL, advance, clearance
-from primkit.study import make_scripted_drive, scripted_route
+from primkit.study import drives_on, make_scripted_drive, scripted_route, shares_seen
 from tests.filing import refusal
 
 SUITE, DRIVES = pk.paper_suite(), scripted_drives()
@@ -73,6 +73,17 @@ def test_free_boards_are_driven_too(seed):
     assert clearance(world, poses[:, :2]).min() > 0
 
 
+def test_other_maps_are_driven_on_too_and_each_for_itself():
+    """A map of the suite under its name has the bundled drive; any other one that of its name and the seed."""
+    own, other = pk.random_world(2, rng=3), pk.random_world(1, rng=4)
+    drives = drives_on({"1-circle": SUITE["1-circle"], "own": own, "1-pentagon": other}, seed=5)
+    assert (drives["1-circle"] == poses_of("1-circle")).all()
+    assert (drives["own"] == drives_on({"own": own}, seed=5)["own"]).all()
+    assert not np.array_equal(drives["own"], drives_on({"own": own}, seed=6)["own"])
+    assert not np.array_equal(drives["own"], drives_on({"mine": own}, seed=5)["mine"])
+    assert clearance(other, drives["1-pentagon"][:, :2]).min() > 0
+
+
 def test_a_shape_that_cannot_be_reached_is_left_alone():
     wall = pk.Polygon([(0.1, -0.49), (0.12, -0.49), (0.12, 0.49), (0.1, 0.49)])
     world = pk.World([wall, pk.Circle((0.3, 0), 0.05)])
@@ -84,9 +95,7 @@ def test_a_shape_that_cannot_be_reached_is_left_alone():
 def test_some_shapes_are_seen_in_part_and_most_whole():
     shares = []
     for name, world in SUITE.items():
-        hits = pk.scan(world, poses_of(name)).points()
-        owners = pk.study.oracle.hit_sides(world, hits)[:, 0]
-        shares += [pk.study.views.share_seen(s, hits[owners == i]) for i, s in enumerate(world.shapes)]
+        shares += shares_seen(world, pk.scan(world, poses_of(name)), pk.Lidar())
     assert len(shares) == 94
     assert np.mean(np.array(shares) > 0.99) > 0.5
     assert 5 <= np.sum(np.array(shares) < 0.9) <= 47

@@ -11,13 +11,18 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from .words import Parser, path, say, whole
 
-STUDY_TEXT = "map many boards: the paper's Tables 1 and 2 beside ours"
+if TYPE_CHECKING:
+    from ..study import Row
+
+STUDY_TEXT = "map many boards: the paper's Tables 1 to 4 beside ours"
 STUDY_EXAMPLES = """\
 examples:
-  primkit study                          34 maps, both methods
+  primkit study                          34 maps, both methods: Tables 1 and 2
+  primkit study --movement manual        the same, driven: Tables 3 and 4
   primkit study --jobs 1                 one process: the most comparable times
   primkit study --maps maps --out mine   every map in a folder of yours
   primkit study --scheduler tcp://192.168.0.2:8786
@@ -26,6 +31,7 @@ examples:
 Once stopped, a study continues when the same command is given again: finished maps
 are in journal.jsonl. --fresh starts anew.
 """
+SCRIPTED = "Ours were driven by a script that goes around each shape and leaves parts out, and by nobody."
 ACCURACY_TEXT = "how right, against noise, shapes, scans, strays"
 ACCURACY_EXAMPLES = """\
 examples:
@@ -42,6 +48,7 @@ def study_options(parser: Parser) -> None:
     parser.option(
         "--maps", "PATH", path, None, "GeoJSON files, or folders of them", nargs="+", shown="the paper's 34 maps"
     )
+    parser.choice("--movement", ("automatic", "manual", "both"), "on way-points, or driven by a script, or both")
     _many_options(parser, "the methods", "tables and rows as CSV")
     parser.add_argument("--fresh", action="store_true", help="forget the journal of earlier runs")
 
@@ -82,7 +89,7 @@ def _workers(arguments: argparse.Namespace) -> Iterator[int | None]:
 def study(arguments: argparse.Namespace) -> None:
     """Map many boards with one method or both, print the tables, and write all numbers."""
     from ..formats import paper_suite
-    from ..study import JOURNAL, METHODS, make_folder, maps_in, n_rows, run_study, tables, write_tables
+    from ..study import JOURNAL, METHODS, drives_on, make_folder, maps_in, n_rows, run_study, tables, write_tables
 
     wanted = {name: method for name, method in METHODS.items() if arguments.settings in ("both", name.lower())}
     maps = paper_suite() if arguments.maps is None else maps_in(arguments.maps)
@@ -90,17 +97,33 @@ def study(arguments: argparse.Namespace) -> None:
     journal = out / JOURNAL
     if arguments.fresh:
         journal.unlink(missing_ok=True)
-    before = n_rows(journal)
+    before, rows = n_rows(journal), []
     with _workers(arguments) as jobs:
-        rows = run_study(maps, wanted, folder=out, jobs=jobs, seed=arguments.seed)
+        for movement in ("automatic", "manual"):
+            if arguments.movement in (movement, "both"):
+                drives = drives_on(maps, seed=arguments.seed) if movement == "manual" else None
+                rows += run_study(maps, wanted, folder=out, drives=drives, jobs=jobs, seed=arguments.seed)
     kept = len(rows) - (n_rows(journal) - before)
-    made = tables(rows)
+    made = tables(rows, driven=SCRIPTED)
     for table in made:
         say(f"{table}\n")
     files = write_tables(out, made, rows)
+    if arguments.movement != "automatic":
+        files.append(_say_seen(rows, out))
     say(f"Maps   {len(maps)} with {' and '.join(wanted)}; {kept} of {len(rows)} results were in the journal already")
     say(f"Wrote  {', '.join(str(out / name) for name in (*files, JOURNAL))}")
     say(f"Next   open {out / 'rows.csv'}: one line for each map and method, times included.")
+
+
+def _say_seen(rows: list[Row], out: Path) -> str:
+    """Print how right the shapes are by how much of them was seen, write it, and return the file's name."""
+    from ..formats import write_atomically
+    from ..study import seen_table
+
+    table = seen_table(rows)
+    say(f"{table}\n")
+    write_atomically(out / table.file, table.csv())
+    return table.file
 
 
 def accuracy(arguments: argparse.Namespace) -> None:

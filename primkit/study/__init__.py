@@ -16,6 +16,7 @@ The rooms, each of which imports only those before it:
 =================  ==========================================================
 ``oracle.py``      the best that any method can do from the same points
 ``row.py``         what became of one map with one method
+``seen.py``        how much of each shape a drive has seen
 ``experiment.py``  one map, one method, one row
 ``journal.py``     rows written down one by one, so that a killed study continues
 ``many.py``        all of them, in parallel
@@ -23,6 +24,7 @@ The rooms, each of which imports only those before it:
 ``table.py``       a table with intervals as text, HTML and CSV
 ``published.py``   the paper's figures, and the tables that put ours beside them
 ``estimate.py``    a figure with its 95 % interval
+``manual.py``      how right the shapes are that a drive has seen
 ``sweeps.py``      what the accuracy study changes, in which steps
 ``accuracy.py``    how right each method is at each step, the oracle beside it
 ``wander.py``      random drives among the shapes
@@ -40,12 +42,14 @@ from .cluster import on_cluster
 from .estimate import Estimate
 from .experiment import Experiment, Run, perform, run
 from .journal import JOURNAL, make_folder, n_rows
+from .manual import SeenLine, SeenTable, seen_table
 from .many import METHODS, maps_in, run_study
 from .oracle import ORACLE, Oracle, oracle_fit, told_points
 from .partial import PartialLine, PartialTable, run_partial
 from .published import PUBLISHED, rows_as_csv, tables, write_tables
 from .row import Row, Score
-from .scripted import make_scripted_drive, scripted_route
+from .scripted import drives_on, make_scripted_drive, scripted_route
+from .seen import share_seen, shares_seen
 from .sweeps import REMEDIES, SWEEPS, UNTUNED
 from .table import Line, Table
 from .together import accuracy_study
@@ -81,7 +85,13 @@ __all__ = [
     "oracle_fit",
     "wander",
     "scripted_route",
+    "drives_on",
     "make_scripted_drive",
+    "seen_table",
+    "SeenTable",
+    "SeenLine",
+    "share_seen",
+    "shares_seen",
     "Experiment",
     "Run",
     "run",

@@ -44,6 +44,7 @@ from ..shapes import Circle, Kind
 from ..world import World
 from .oracle import Oracle, oracle_fit, told_points
 from .row import Row, Score
+from .seen import shares_seen
 
 # Another version of these may draw or compute other numbers.
 LIBRARIES = ("numpy", "scipy", "scikit-learn", "shapely")
@@ -160,6 +161,7 @@ def perform(experiment: Experiment) -> Row:
         robot_time=run_.robot_time,
         computing_time=run_.computing_time,
         found_as=_found_as(fair, experiment.world),
+        seen=() if experiment.drive is None else shares_seen(experiment.world, run_.scans, experiment.lidar),
     )
 
 

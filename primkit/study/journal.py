@@ -92,6 +92,6 @@ def append(file: BinaryIO | None, row: Row, key: str) -> None:
 
 def _as_row(told: dict[str, Any]) -> Row:
     """Return a row from what JSON makes of it."""
-    told = {"found_as": (), **told}  # rows of earlier versions do not say it
-    lists = {name: tuple(told[name]) for name in ("kinds", "center_errors", "dimension_errors", "found_as")}
+    told = {"found_as": (), "seen": (), **told}  # rows of earlier versions do not say it
+    lists = {name: tuple(told[name]) for name in ("kinds", "center_errors", "dimension_errors", "found_as", "seen")}
     return replace(Row(**{**told, **lists}), fair=Score(**told["fair"]), paper=Score(**told["paper"]))

@@ -17,7 +17,7 @@ interval is that of Efron (1979), "Bootstrap methods: another look at the jackkn
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import astuple, dataclass, fields
+from dataclasses import astuple, dataclass, fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -71,13 +71,15 @@ PUBLISHED: Mapping[Movement, Mapping[str, Figures]] = {
 }
 
 
-def tables(rows: Iterable[Row]) -> tuple[Table, ...]:
+def tables(rows: Iterable[Row], *, driven: str = "") -> tuple[Table, ...]:
     """Return the paper's tables with our means beside the published figures.
 
     Parameters
     ----------
     rows : iterable of Row
         Of ``run_study``: any maps, settings and movements.
+    driven : str
+        Who drove, or how: a sentence that is added to the notes of Tables 3 and 4.
 
     Returns
     -------
@@ -110,7 +112,8 @@ def tables(rows: Iterable[Row]) -> tuple[Table, ...]:
         by_count = {f"{n} shapes": [row for row in several if row.n_shapes == n] for n in counts}
         made.append(_table(f"Table {first}. One shape, {movement} movement", one, by_kind | {AVERAGE: one}))
         made.append(_table(f"Table {first + 1}. Several shapes, {movement} movement", several, by_count))
-    return tuple(table for table in made if table.lines)
+    drives = [replace(table, notes=(*table.notes, driven)) if driven else table for table in made[2:]]
+    return tuple(table for table in (*made[:2], *drives) if table.lines)
 
 
 def rows_as_csv(rows: Iterable[Row]) -> str:

@@ -11,7 +11,9 @@ Out: a ``Row``, which also knows its scores at other tolerances, and which error
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import islice
 from typing import Literal
 
 from ..arguments import ROUNDING
@@ -61,6 +63,8 @@ class Row:
         Filling the grid and finding the shapes, seconds on this machine.
     found_as : tuple of str and None
         For each of ``kinds``, the kind of the shape that was found in its place; None where it was missed.
+    seen : tuple of float
+        For each of ``kinds``, the share of its outline that the drive saw; empty with automatic movement.
     """
 
     map: str
@@ -77,11 +81,17 @@ class Row:
     robot_time: float
     computing_time: float = field(compare=False)
     found_as: tuple[Kind | None, ...] = ()
+    seen: tuple[float, ...] = ()
 
     @property
     def n_shapes(self) -> int:
         """How many shapes there are."""
         return len(self.kinds)
+
+    @property
+    def n_false(self) -> int:
+        """How many shapes were found where there are none."""
+        return self.n_found - sum(kind is not None for kind in self.found_as)
 
     @property
     def count_right(self) -> bool:
@@ -109,6 +119,31 @@ class Row:
         dimension = right[1] / sum(N_DIMENSIONS[kind] for kind in self.kinds)
         weighted = SHAPE_WEIGHT * shape + CENTER_WEIGHT * center + DIMENSION_WEIGHT * dimension
         return Score(weighted, shape, center, dimension)
+
+    def scores_by_shape(self) -> list[Score]:
+        """Return the fair scores of each true shape by itself: nothing is right of one that was missed.
+
+        Examples
+        --------
+        >>> right, kinds = Score(1.0, 1.0, 1.0, 1.0), ("circle", "circle")
+        >>> errors = {"center_errors": (0.0, 0.009), "dimension_errors": (0.001,)}
+        >>> row = Row("", "", kinds, "manual", 0.005, False, 1, right, right, **errors, robot_time=1.0,
+        ...           computing_time=0.1, found_as=("circle", None))
+        >>> [(score.shape, score.center, score.dimension) for score in row.scores_by_shape()]
+        [(1.0, 0.5, 1.0), (0.0, 0.0, 0.0)]
+        """
+        scores = []
+        centers, dimensions = iter(self.center_errors), iter(self.dimension_errors)
+        for kind, found in zip(self.kinds, self.found_as, strict=True):
+            shape = float(kind == found)
+            center = self._right(islice(centers, 2 * (found is not None))) / 2
+            dimension = self._right(islice(dimensions, N_DIMENSIONS[kind] * (kind == found))) / N_DIMENSIONS[kind]
+            weighted = SHAPE_WEIGHT * shape + CENTER_WEIGHT * center + DIMENSION_WEIGHT * dimension
+            scores.append(Score(weighted, shape, center, dimension))
+        return scores
+
+    def _right(self, errors: Iterable[float]) -> int:
+        return sum(abs(error) <= self.tolerance + ROUNDING for error in errors)
 
     def errors_by_shape(self) -> list[tuple[tuple[float, ...], tuple[float, ...]] | None]:
         """Return for each true shape its centre's and its dimensions' errors, metres.

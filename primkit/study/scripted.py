@@ -18,14 +18,16 @@ neither scans nor map: whether everything was seen, it cannot tell.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
+from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments import as_rng, check_type
-from ..formats import SUITE_SEED, Route, paper_suite
+from ..arguments import as_count, as_rng, check_type
+from ..formats import SUITE_SEED, Route, paper_suite, scripted_drives
 from ..robot import AXLE, FASTEST, PERIOD, WHEEL, advance, clearance, moved, start_pose
 from ..shapes import Shape
 from ..world import World
@@ -103,6 +105,33 @@ def make_scripted_drive(name: str) -> Route:
         raise ValueError(f"name must be one of the suite's maps, {', '.join(suite)}, got {name!r}")
     # The number of the map, as for the map itself, and one more: no draw of the drive is one of the map.
     return scripted_route(suite[name], rng=np.random.default_rng([SUITE_SEED, list(suite).index(name) + 1, 1]))
+
+
+def drives_on(worlds: Mapping[str, World], *, seed: int = 0) -> dict[str, Floats]:
+    """Return the poses of a scripted drive on each map, by name, for ``run_study(worlds, drives=...)``.
+
+    Parameters
+    ----------
+    worlds : dict of str to World
+        The maps. Those of the suite have their bundled drives.
+    seed : int
+        Of the drives on all other maps; that on one of them does not depend on the others.
+
+    Examples
+    --------
+    >>> {name: poses.shape for name, poses in drives_on({"empty": World()}).items()}
+    {'empty': (1, 3)}
+    """
+    suite, bundled, seed = paper_suite(), scripted_drives(), as_count(seed, "seed", least=0)
+    routes = {
+        name: bundled[name] if suite.get(name) == world else scripted_route(world, rng=_own_rng(name, seed))
+        for name, world in worlds.items()
+    }
+    return {name: route.poses(worlds[name]) for name, route in routes.items()}
+
+
+def _own_rng(name: str, seed: int) -> np.random.Generator:
+    return np.random.default_rng([seed, crc32(name.encode())])
 
 
 # --- the plan -----------------------------------------------------------------------------------------------

@@ -26,6 +26,7 @@ from ..pipeline import ROBUST
 from ..shapes import Circle, Kind, Shape
 from .experiment import Experiment, run
 from .oracle import exact_ranges, hit_sides
+from .seen import share_seen
 from .sweeps import UNTUNED, roomy_world
 from .wander import wander
 
@@ -36,7 +37,6 @@ N_SHAPES = 4
 ROOM = 0.10  # m: gap between shapes, wide enough to drive through
 N_SCANS = 60
 SEEN = (0.4, 0.9)  # share of the outline
-NEAR = 0.012  # m: a stretch of outline within this of a hit was seen
 INNER = 0.8  # share of a side, in its middle, that decides whether it was ever seen
 
 
@@ -107,15 +107,6 @@ def views_from(noise_std: float, number: int, seed: int = 0) -> list[View]:
         if SEEN[0] <= seen <= SEEN[1]:
             views.append(view_of(number, shape, seen, unseen_sides(shape, hits[own], owners[own, 1]), pairs.get(i)))
     return views
-
-
-def share_seen(shape: Shape, hits: Floats) -> float:
-    """Return the share of a shape's outline that lies within 12 mm of its hits."""
-    from scipy.spatial import cKDTree
-
-    if len(hits) == 0:
-        return 0.0
-    return float((cKDTree(hits).query(shape.outline(400))[0] <= NEAR).mean())
 
 
 def unseen_sides(shape: Shape, hits: Floats, sides: NDArray[np.int64]) -> Bools:

@@ -1,0 +1,170 @@
+"""Manual: how right the shapes of a drive are, by how much of their outline it saw.
+
+In:  the rows of a study with manual movement.
+Out: a ``SeenTable``: for each method, the shapes that were seen on at least 60 % of their outline, and the others.
+
+>>> print(str(seen_table([])).splitlines()[0])
+Shapes by how much of their outline was seen, manual movement
+
+Whoever drives leaves something out, and what was never seen nobody can measure. Tables 3 and 4 count it all the same;
+here each shape stands for itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import astuple, dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from .estimate import Estimate, ratio_of
+from .row import Row, Score
+from .table import as_block, as_csv, as_html, wrapped
+
+ENOUGH = 0.6  # share of an outline
+HEADER = ("", "total", "shape", "centre", "dimensions")
+
+
+@dataclass(frozen=True)
+class SeenLine:
+    """The means of one method over shapes that were seen alike.
+
+    Parameters
+    ----------
+    group : str
+        How much was seen of them.
+    method : str
+        Whose figures these are.
+    n_shapes, n_all, n_maps : int
+        How many shapes these are, of how many, and on how many maps.
+    weighted : Estimate
+        The mean of the weighted accuracy, with its interval over the maps.
+    mean : Score
+        The means of all scores.
+    """
+
+    group: str
+    method: str
+    n_shapes: int
+    n_all: int
+    n_maps: int
+    weighted: Estimate
+    mean: Score
+
+    def heading(self) -> str:
+        """Return what these shapes have in common, and how many there are."""
+        maps = f"{self.n_maps} map{'s' * (self.n_maps != 1)}"
+        return f"{self.group}: {self.n_shapes} of {self.n_all} shapes, on {maps}"
+
+    def cells(self) -> tuple[str, ...]:
+        """Return the line as texts, one for each column."""
+        parts = (f"{part:.3f}" for part in (self.mean.shape, self.mean.center, self.mean.dimension))
+        return (self.method, str(self.weighted), *parts)
+
+
+@dataclass(frozen=True)
+class SeenTable:
+    """Lines by how much was seen; prints as text, shows as HTML in a notebook.
+
+    Parameters
+    ----------
+    lines : tuple of SeenLine
+        Neighbours with the same heading make a group.
+    shapes : tuple of tuple
+        One for each shape and method: map, method, kind, kind found, share seen, and the four scores.
+    notes : tuple of str
+        What a reader must know, one thought each.
+    """
+
+    lines: tuple[SeenLine, ...]
+    shapes: tuple[tuple[object, ...], ...]
+    notes: tuple[str, ...] = ()
+    title: ClassVar[str] = "Shapes by how much of their outline was seen, manual movement"
+    file: ClassVar[str] = "seen.csv"
+
+    def groups(self) -> list[tuple[str, list[tuple[str, ...]]]]:
+        """Return each group's heading with its lines' texts."""
+        headings = dict.fromkeys(line.heading() for line in self.lines)
+        return [(heading, [line.cells() for line in self.lines if line.heading() == heading]) for heading in headings]
+
+    def __str__(self) -> str:
+        return "\n".join([self.title, "", *as_block(HEADER, self.groups()), *wrapped(self.notes)])
+
+    def _repr_html_(self) -> str:
+        return as_html(self.title, HEADER, self.groups(), self.notes)
+
+    def csv(self) -> str:
+        """Return one line for each shape and method as CSV: shares and scores from 0 to 1."""
+        return as_csv(
+            ("map", "method", "kind", "found_as", "seen", "weighted", "shape", "center", "dimension"), self.shapes
+        )
+
+
+def seen_table(rows: Iterable[Row], enough: float = ENOUGH) -> SeenTable:
+    """Return how right the shapes are that a drive saw enough of, and how right the others.
+
+    Parameters
+    ----------
+    rows : iterable of Row
+        Of ``run_study``; only those with manual movement count.
+    enough : float
+        Share of the outline.
+
+    Examples
+    --------
+    >>> seen_table([]).lines
+    ()
+    """
+    rows = [row for row in rows if row.movement == "manual"]
+    lines = []
+    for group, wanted in ((f"seen on {100 * enough:g} % or more", True), ("seen on less", False)):
+        for method in dict.fromkeys(row.settings for row in rows):
+            line = _line(group, [row for row in rows if row.settings == method], enough, wanted)
+            lines += [] if line is None else [line]
+    shapes = [
+        (row.map, row.settings, kind, found, seen, *astuple(score))
+        for row in rows
+        for kind, found, seen, score in zip(row.kinds, row.found_as, row.seen, row.scores_by_shape(), strict=True)
+    ]
+    return SeenTable(tuple(lines), tuple(shapes), _notes(rows, lines))
+
+
+def _line(group: str, rows: Sequence[Row], enough: float, wanted: bool) -> SeenLine | None:
+    """Return one method's means over the shapes that were seen enough, or over the others; None without any."""
+    chosen = [
+        [score for score, seen in zip(row.scores_by_shape(), row.seen, strict=True) if (seen >= enough) == wanted]
+        for row in rows
+    ]
+    sums = np.array([[len(scores), sum(score.weighted for score in scores)] for scores in chosen if scores])
+    if len(sums) == 0:
+        return None
+    means = np.mean([astuple(score) for scores in chosen for score in scores], axis=0)
+    return SeenLine(
+        group=group,
+        method=f"{rows[0].settings} within {1000 * rows[0].tolerance:g} mm",
+        n_shapes=int(sums[:, 0].sum()),
+        n_all=sum(row.n_shapes for row in rows),
+        n_maps=len(sums),
+        weighted=ratio_of(sums[:, 1], sums[:, 0]),
+        mean=Score(*means.tolist()),
+    )
+
+
+def _notes(rows: Sequence[Row], lines: Sequence[SeenLine]) -> tuple[str, ...]:
+    if not rows:
+        return ()
+    false = {row.settings: 0 for row in rows}
+    for row in rows:
+        false[row.settings] += row.n_false
+    notes = [
+        "seen: a stretch of outline with a hit within 12 mm, as a sensor without faults has them.",
+        "Each shape counts alike: total = 0.4 shape + 0.3 centre + 0.3 dimensions, and 0 for one that was missed. What "
+        "was found where there is nothing belongs to no shape and counts in Tables 3 and 4 alone: "
+        f"{', '.join(f'{method} {n}' for method, n in false.items())}.",
+    ]
+    if any(line.weighted.low is not None for line in lines):
+        notes.append("In brackets: 95 % interval of the mean over the maps (bootstrap).")
+    if any(line.weighted.value == 1 and line.n_maps > 1 for line in lines):
+        notes.append("Where all shapes on n maps score 1, up to about 3/n of all such maps may still score less.")
+    return tuple(notes)

@@ -1,0 +1,49 @@
+"""Seen: how much of each shape's outline a drive has seen.
+
+In:  a ``World``, the ``Scans`` of it, and the sensor that made them.
+Out: for each shape a share from 0 to 1.
+
+>>> from primkit.lidar import scan
+>>> from primkit.shapes import Circle
+>>> world = World([Circle((0.2, 0.0), 0.05), Circle((-0.4, 0.0), 0.05)])
+>>> [round(share, 1) for share in shares_seen(world, scan(world, [(0, 0, 0)]), Lidar())]
+[0.4, 0.0]
+
+The truth decides, not the method: what counts are the hits that a sensor without faults would have had.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..lidar import Lidar, Scans
+from ..shapes import Shape
+from ..world import World
+from .oracle import exact_ranges, hit_sides
+
+Floats = NDArray[np.float64]
+
+NEAR = 0.012  # m: a stretch of outline within this of a hit was seen
+
+
+def shares_seen(world: World, scans: Scans, lidar: Lidar) -> tuple[float, ...]:
+    """Return for each shape of a world the share of its outline that was seen."""
+    exact = exact_ranges(world, scans, lidar)
+    hits = Scans(scans.poses, scans.angles, exact, scans.inside).points()
+    owners = hit_sides(world, hits)[:, 0]
+    return tuple(share_seen(shape, hits[owners == number]) for number, shape in enumerate(world.shapes))
+
+
+def share_seen(shape: Shape, hits: Floats) -> float:
+    """Return the share of a shape's outline that lies within 12 mm of its hits.
+
+    >>> from primkit.shapes import Circle
+    >>> share_seen(Circle((0, 0), 0.05), np.empty((0, 2)))
+    0.0
+    """
+    from scipy.spatial import cKDTree
+
+    if len(hits) == 0:
+        return 0.0
+    return float((cKDTree(hits).query(shape.outline(400))[0] <= NEAR).mean())
