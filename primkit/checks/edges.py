@@ -230,6 +230,12 @@ def _without_a_line(cases: list[Case]) -> bool:
     return all(case.expected is None for case in cases if case.off)
 
 
+def _offset_first(cases: list[Case]) -> bool:
+    """Tell whether the two numbers of each line came back in the other order."""
+    turned = [(mine and mine[::-1], case) for case in cases for mine in [as_line(case.got)]]
+    return all(line()(mine, case.expected, case.args) is None for mine, case in turned)
+
+
 def _upright(cases: list[Case]) -> bool:
     """Tell whether nothing is off but pairs one above the other, doubled points included."""
     return all(case.args[0][0] == case.args[1][0] for case in cases if case.off)
@@ -298,10 +304,7 @@ line_through = Check(
             "Are x and y in the right places? np.arctan2 takes y first, then x.",
             like=_through_with(lambda angle, offset, _p, _q: (np.pi / 2 - angle, offset)),
         ),
-        Fault(
-            "A line is (angle, offset): the angle comes first.",
-            like=_through_with(lambda angle, offset, _p, _q: (offset, angle)),
-        ),
+        Fault("A line is (angle, offset): the angle comes first.", when=_offset_first),
         Fault(
             "The normal must have length 1: else the offset is no distance in metres.",
             like=_through_with(lambda angle, offset, p, q: (angle, offset * float(np.hypot(*(q - p))))),

@@ -66,6 +66,12 @@ def through_degrees(p, q):
     return line and (math.degrees(line[0]), line[1])
 
 
+def offset_first(p, q):
+    """The offset before the angle, of the opposite normal."""
+    line = through(p, q)
+    return line and (-line[1], line[0] + math.pi)
+
+
 def through_floats(p, q):
     a = float(q[1] - p[1]) / float(q[0] - p[0])
     return math.atan2(1, -a), float(p[1] - a * p[0]) / math.hypot(a, 1)
@@ -225,7 +231,7 @@ ANSWERS = {
                 "the other side of the origin",
             ),
             "x before y": (lambda p, q: (line := through(p, q)) and (math.pi / 2 - line[0], line[1]), "takes y first"),
-            "offset first": (lambda p, q: (line := through(p, q)) and line[::-1], "the angle comes first"),
+            "offset first": (offset_first, "the angle comes first"),
             "nothing": (lambda p, q: None, "got None, expected (-1.571, -0.1) (is there a return?)"),
         },
         "error": {"floats": (through_floats, "raised ZeroDivisionError")},
