@@ -43,7 +43,10 @@ _STORY = {
         *("Drive", "record_drive", "load_drive", "save_drive", "paper_suite", "scripted_drives"),
     ),
     "study": ("run_study", "tables", "scripted_route"),
-    "plots": ("plot_world", "plot_scan", "plot_points", "plot_clusters", "plot_found", "plot_story", "save_figure"),
+    "plots": (
+        *("plot_world", "plot_scan", "plot_points", "plot_clusters", "plot_found"),
+        *("plot_story", "plot_drive", "save_figure"),
+    ),
 }
 # Rooms that are used by their own name: pk.widgets.rays(), pk.checks.ray_segment(mine).
 _ROOMS = ("widgets", "checks")
@@ -89,7 +92,16 @@ if TYPE_CHECKING:
     from .lines import Line, find_lines, fit_line
     from .measure import Detection, measure_shape
     from .pipeline import PAPER, ROBUST, Settings, find_shapes
-    from .plots import plot_clusters, plot_found, plot_points, plot_scan, plot_story, plot_world, save_figure
+    from .plots import (
+        plot_clusters,
+        plot_drive,
+        plot_found,
+        plot_points,
+        plot_scan,
+        plot_story,
+        plot_world,
+        save_figure,
+    )
     from .ransac import run_ransac, trials_needed
     from .raycast import cast_rays
     from .robot import drive, skipped_waypoints, teleport_poses

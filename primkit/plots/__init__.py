@@ -3,7 +3,7 @@
 Beside the story: each step's output can be looked at, the truth and the finding in the same colours.
 
 In:  what the steps hand on: a ``World``, ``Scans``, points, labels, what was found, a ``Report``.
-Out: the matplotlib ``Axes`` that was drawn on; ``plot_story`` gives a whole ``Figure``.
+Out: the matplotlib ``Axes`` that was drawn on; ``plot_story`` and ``plot_drive`` give a whole ``Figure``.
 
 >>> from primkit.shapes import Circle
 >>> from primkit.world import World
@@ -23,6 +23,7 @@ The rooms, each of which imports only those before it:
 ``pictures.py``  the board, a scan, the points, the clusters
 ``found.py``     the shapes that were found, over the truth
 ``story.py``     all of them in one figure, and the file it goes to
+``driving.py``   how the map grows on a drive
 ``accuracy.py``  a study's accuracy against noise, shapes, scans and strays
 ===============  ==================================================
 
@@ -31,6 +32,7 @@ which colour-blind readers can tell apart.
 """
 
 from .accuracy import PANELS, plot_accuracy
+from .driving import plot_drive
 from .found import plot_found
 from .look import KIND_COLORS, KIND_MARKERS
 from .pictures import plot_clusters, plot_points, plot_scan, plot_world
@@ -43,6 +45,7 @@ __all__ = [
     "plot_clusters",
     "plot_found",
     "plot_story",
+    "plot_drive",
     "plot_accuracy",
     "save_figure",
     "PANELS",

@@ -1,0 +1,135 @@
+"""Driving: how the map grows while the robot drives, as a strip of frames.
+
+In:  a ``World`` and a ``Drive`` through it, just driven or read back from its journal.
+Out: a matplotlib ``Figure``: the same board several times, with what was seen by then.
+
+>>> from primkit.lidar import scan
+>>> from primkit.shapes import Circle
+>>> world = World([Circle((0.2, 0), 0.05)])
+>>> figure = plot_drive(world, Drive(scan(world, [(0, 0, 0), (0, 0.01, 0)]), [(0, 0), (6, 6)]), n_frames=2)
+>>> [ax.get_title(loc="left") for ax in figure.axes]
+['0.1 s: 9 points', '0.2 s: 13 points']
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle as CirclePatch
+from numpy.typing import NDArray
+
+from ..arguments import as_count
+from ..formats import Drive
+from ..grid import Grid
+from ..robot import BODY
+from ..world import World
+from .look import BLUE, GREY, INK, PALE, VERMILION, check_type, count, draw_board, marks, patch, set_title
+from .story import Picture, freeze, plain
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+COLUMNS = 3
+FRAME = 2.5  # inches
+HEAD = 0.8  # inches: title and legend
+BEFORE: dict[str, Any] = {"marker": "o", "color": INK, "markersize": 2.2, "markeredgewidth": 0, "linestyle": "none"}
+NEW: dict[str, Any] = BEFORE | {"color": VERMILION, "markersize": 3.4}
+WAY: dict[str, Any] = {"color": BLUE, "linewidth": 1.0}
+
+
+def plot_drive(world: World, drive: Drive, n_frames: int = 6) -> Figure:
+    """Return one figure with frames of a drive: the way so far, what was seen by then, and what of it is new.
+
+    Parameters
+    ----------
+    world : World
+        The truth, drawn pale: it is not known to the robot.
+    drive : Drive
+        What was driven and seen.
+    n_frames : int
+        How many frames, evenly spread over the scans; at most one for each scan.
+
+    Returns
+    -------
+    Figure
+        Made without pyplot, so that nothing stays open. A notebook shows it when it is a cell's last value;
+        ``save_figure`` writes it to a file.
+
+    Raises
+    ------
+    ValueError
+        If the drive has no scans, or an argument is of another type.
+
+    Notes
+    -----
+    Points are the grid's: cells of 1 mm that were hit, each counted when it was hit first.
+    """
+    check_type("world", world, World)
+    check_type("drive", drive, Drive)
+    n_frames = min(as_count(n_frames, "n_frames"), len(drive))
+    if n_frames == 0:
+        raise ValueError("a drive must have scans to be drawn, got none")
+    ends = np.linspace(0, len(drive), n_frames + 1).round().astype(int)
+    points, first = _first_seen(drive)
+    columns = 2 if n_frames == 4 else min(COLUMNS, n_frames)
+    rows = -(-n_frames // columns)
+    with plain():
+        figure = Picture(figsize=(max(columns * FRAME, 4.0), rows * FRAME + HEAD), layout="constrained")
+        grid = figure.subplots(rows, columns, squeeze=False).ravel()
+        for number, (ax, before, end) in enumerate(zip(grid, ends, ends[1:], strict=False)):
+            _draw_frame(ax, world, drive.poses[:end], points[first < end], first[first < end] >= before)
+            set_title(ax, f"{end * drive.period:.1f} s: {count(int((first < end).sum()), 'point')}")
+            _keep_outer_labels(ax, left=number % columns == 0, below=number + columns >= n_frames)
+        for ax in grid[n_frames:]:
+            ax.remove()
+        title = f"The map grows: {count(len(points), 'point')} after {len(drive) * drive.period:.1f} s"
+        figure.suptitle(title, x=0.01, ha="left", size=11, weight="bold")
+        ncols = 4 if columns == COLUMNS else 2
+        figure.legend(handles=_legend(), loc="outside lower center", ncols=ncols, frameon=False, fontsize=8.5)
+        freeze(figure)
+    return figure
+
+
+def _first_seen(drive: Drive) -> tuple[Floats, Ints]:
+    """Return the grid's points, shape (N, 2), and the number of the scan that hit each first, shape (N,)."""
+    grid, scans = Grid(), drive.scans
+    cells, first = np.unique(grid.to_cells(scans.points()), axis=0, return_index=True)
+    return grid.to_points(cells), np.nonzero(scans.hits)[0][first]
+
+
+def _draw_frame(ax: Axes, world: World, poses: Floats, points: Floats, new: NDArray[np.bool_]) -> None:
+    """Draw the board, the shapes pale, the way, the points, and the robot at its end."""
+    draw_board(ax, world.size, points)
+    for shape in world.shapes:
+        ax.add_patch(patch(shape, facecolor="#F2F2F2", edgecolor=PALE, linewidth=0.8, zorder=1))
+    ax.plot(*poses[:, :2].T, zorder=2, **(WAY | {"linewidth": marks(ax, 1.2)}))
+    for look, those in ((BEFORE, ~new), (NEW, new)):
+        ax.plot(*points[those].T, zorder=3, **(look | {"markersize": marks(ax, look["markersize"])}))
+    x, y, heading = poses[-1].tolist()
+    ax.add_patch(CirclePatch((x, y), BODY, facecolor="white", edgecolor=INK, linewidth=1, zorder=4))
+    nose = BODY * np.array([np.cos(heading), np.sin(heading)])
+    ax.plot([x, x + nose[0]], [y, y + nose[1]], color=INK, linewidth=1.5, solid_capstyle="butt", zorder=5)
+
+
+def _keep_outer_labels(ax: Axes, *, left: bool, below: bool) -> None:
+    """Leave the scales to the frames at the edge of the figure: all show the same board."""
+    if not left:
+        ax.set(ylabel="")
+        ax.tick_params(labelleft=False)
+    if not below:
+        ax.set(xlabel="")
+        ax.tick_params(labelbottom=False)
+
+
+def _legend() -> list[Line2D]:
+    robot: dict[str, Any] = {"marker": "o", "markerfacecolor": "white", "markeredgecolor": INK, "markersize": 7}
+    return [
+        Line2D([], [], label="seen before", **(BEFORE | {"markersize": 4})),
+        Line2D([], [], label="new in this frame", **(NEW | {"markersize": 5})),
+        Line2D([], [], label="way so far", **WAY),
+        Line2D([], [], label="robot", linestyle="none", color=GREY, **robot),
+    ]
