@@ -12,7 +12,7 @@ Out: ``Candidate`` explanations, the best first.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -76,6 +76,29 @@ def candidates(
         polished = _polished(local, waiting.pop(0), spread, soft)
         done += [] if polished is None else [polished]
     return [_moved(c, middle) for c in sorted(done + waiting, key=lambda c: c.cost)]
+
+
+def explained_again(
+    points: Floats, before: Sequence[Candidate], spread: float, *, soft: bool = True
+) -> list[Candidate]:
+    """Return the best explanation and its best rival, fitted anew from what they were with fewer points.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        Metres: those that were explained before, and a few more.
+    before : sequence of Candidate
+        What ``candidates`` returned for them.
+    spread : float
+        As for ``candidates``; so is the next.
+    soft : bool
+        Share points between sides.
+    """
+    middle, shapes = points.mean(axis=0), [c for c in before if c.figure is not None]
+    rivals = [next((c for c in shapes if c.kind != shapes[0].kind), None)] if shapes else []
+    kept = [_moved(c, -middle) for c in (*shapes[:1], *rivals) if c is not None]
+    again = [_polished(points - middle, c, spread, soft) for c in kept]
+    return [_moved(c, middle) for c in sorted((c for c in again if c is not None), key=lambda c: c.cost)]
 
 
 def _rough(points: Floats, spread: float, rng: np.random.Generator) -> list[Candidate]:

@@ -186,8 +186,9 @@ def scan(
     >>> float(scan(World([near, far]), [(0, 0, 0)]).ranges[0, 0])
     inf
     """
+    check_type(world, World, "world must be a World, as in scan(world, poses)")
     poses = as_poses(poses)
-    return next(_scanned(world, poses, lidar, rng, max(1, len(poses)), "scan(world, poses)"))
+    return next(_scanned(world, poses, lidar, rng, max(1, len(poses))))
 
 
 def scan_blocks(
@@ -225,14 +226,14 @@ def scan_blocks(
     >>> [len(scans) for scans in scan_blocks(World(), np.zeros((5, 3)), size=2)]
     [2, 2, 1]
     """
-    return _scanned(world, as_poses(poses), lidar, rng, as_count(size, "size"), "scan_blocks(world, poses)")
+    check_type(world, World, "world must be a World, as in scan_blocks(world, poses)")
+    return _scanned(world, as_poses(poses), lidar, rng, as_count(size, "size"))
 
 
 def _scanned(
-    world: World, poses: Floats, lidar: Lidar | None, rng: int | np.random.Generator | None, size: int, call: str
+    world: World, poses: Floats, lidar: Lidar | None, rng: int | np.random.Generator | None, size: int
 ) -> Iterator[Scans]:
-    """Check the arguments and return the blocks."""
-    check_type(world, World, f"world must be a World, as in {call}")
+    """Check the other arguments and return the blocks."""
     lidar = Lidar() if lidar is None else lidar
     check_type(lidar, Lidar, "lidar must be a Lidar, such as Lidar()")
     faults = _Faults(lidar, len(poses), min(size, BLOCK), rng)

@@ -28,7 +28,7 @@ from .arguments import as_count, as_points, as_positive, as_rng, check_type
 from .lines import LINE, find_lines
 from .measure import Detection, detection, spread_of
 from .paper import measure_as_published
-from .regroup import Group, explained, regrouped
+from .regroup import Group, explained, grown, regrouped
 from .scatter import LEAST_SPREAD, SIGMAS, spread_across, spread_from_median
 from .segmentation import Grouping, check_count, segment
 from .steps import Steps
@@ -120,8 +120,9 @@ def find_shapes(
         Functions of your own in the place of steps: ``Steps(segment=..., fit_line=..., fit_circle=...)``.
     memory : dict, optional
         For mapping while driving: hand in the same dictionary, empty at first, with every call, and the same
-        seed as ``rng``. Groups whose points have not changed since the last call are not measured again; the
-        result is the same as without it. ``PAPER`` has no use for it.
+        seed as ``rng``. Groups whose points have not changed since the last call are not measured again, and those
+        that have a few points more are fitted anew from what they were: the result is the same as without it to
+        about a tenth of a millimetre. ``PAPER`` has no use for it.
     rng : int or numpy.random.Generator, optional
         Seed or generator: the same seed gives the same shapes, to the last bit, for points in any order.
 
@@ -178,10 +179,19 @@ def _jointly(
     def explain(points: Floats, spread: float) -> Group:
         key = (points.tobytes(), spread, seed, settings.soft)
         if key not in used:
-            used[key] = memory[key] if key in memory else explained(points, spread, seed, soft=settings.soft)
+            used[key] = memory[key] if key in memory else remembered(points, spread)
         return used[key]
 
-    groups, spread = _explain_all(together, settings, explain)
+    def remembered(points: Floats, spread: float) -> Group:
+        alike = (old for (_, *how), old in memory.items() if how == [spread, seed, settings.soft])
+        again = (grown(old, points, spread, soft=settings.soft) for old in alike)
+        group = next((group for group in again if group is not None), None)
+        if group is not None:
+            return group
+        return explained(points, spread, seed, soft=settings.soft)
+
+    last = next((group.spread for group in reversed(memory.values())), None)  # as the last fits left it
+    groups, spread = _explain_all(together, settings, last, explain)
     margins = [float("nan")] * len(groups)
     if settings.second_opinion or n_shapes is not None:
         groups, margins = regrouped(groups, spread, n_shapes, explain=partial(explain, spread=spread))
@@ -196,13 +206,13 @@ def _jointly(
 
 
 def _explain_all(
-    together: list[Floats], settings: Settings, explain: Callable[[Floats, float], Group]
+    together: list[Floats], settings: Settings, last: float | None, explain: Callable[[Floats, float], Group]
 ) -> tuple[list[Group], float]:
-    """Explain each group; where the spread is not given, find it from the points, then from the fits."""
+    """Explain each group; the spread is given, or found from the points or the last call, and then from the fits."""
     if settings.noise_std is not None:
         spread = spread_across(settings.noise_std)
         return [explain(points, spread) for points in together], spread
-    spread = _in_steps(spread_of(np.vstack([np.empty((0, 2)), *together])))
+    spread = last or _in_steps(spread_of(np.vstack([np.empty((0, 2)), *together])))
     groups = [explain(points, spread) for points in together]
     for _ in range(SPREAD_ROUNDS):
         fitted = _spread_of_fits(groups)

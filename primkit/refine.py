@@ -32,7 +32,7 @@ LEAST_SHARE = 2.0
 
 HARD_ROUNDS = 8  # nearly all settle in four or five
 SOFT_ROUNDS = 30  # shares settle slowly around blurred corners; what is left then is far below a cell
-SETTLED = 1e-7  # radians, and 1e-8 m: changes that no sensor tells
+SETTLED = 1e-5  # radians, and 1e-6 m: a hundredth of what any sensor tells
 
 
 def refine_hard(points: Floats, guess: Outlines, reach: float, *, square: bool = False) -> Outlines:

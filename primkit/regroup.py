@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .evidence import Candidate, joint_cost, seen_shares
-from .explain import candidates
+from .explain import candidates, explained_again
 from .measure import Detection, as_detection
 from .scatter import NOWHERE, SIGMAS
 from .segmentation import LEAST_GROUP, kmeans
@@ -42,6 +42,8 @@ CLOSED = 0.9  # an outline seen on nine tenths of its length is no piece of anot
 WELL_EXPLAINED = 0.9  # share of a group's points on its shape; with fewer, the group may be two
 MOST_ACROSS = 0.45  # m: the paper's largest rectangle is 0.424 m from corner to corner; wider pieces are of two shapes
 HULL_SPREADS, HULL_CELLS = 6.0, 0.002  # the hull runs along the outermost points: others lie up to so much inside [m]
+FEW_NEW = 0.1  # share of new points up to which a group is fitted anew from what it was
+SURE = 30.0  # margin up to which a few points more may change what a group is
 INSIDE_HULL = 0.05  # share of points that may lie inside a hull which should be an outline
 
 
@@ -52,6 +54,7 @@ class Group:
     points: Floats
     ranked: list[Candidate]
     spread: float
+    n_thorough: int  # how many points it had when all explanations were looked for
 
     @cached_property
     def detection(self) -> Detection | None:
@@ -93,7 +96,37 @@ def explained(points: Floats, spread: float, seed: int = 0, *, soft: bool = True
 
     Every group is measured with the same seed, so that a group's result does not depend on the others.
     """
-    return Group(points, candidates(points, spread, soft=soft, rng=seed), spread)
+    return Group(points, candidates(points, spread, soft=soft, rng=seed), spread, len(points))
+
+
+def grown(old: Group, points: Floats, spread: float, *, soft: bool = True) -> Group | None:
+    """Return a group that has a few points more than it had, its explanation fitted anew from what it was.
+
+    Returns
+    -------
+    Group or None
+        None where all explanations should be looked for: many points are new, others are gone, what the group is was
+        in doubt, or it is so now.
+    """
+    if not 1 <= len(points) / old.n_thorough <= 1 + FEW_NEW or len(old.ranked) < 2 or _lead(old.ranked) < SURE:
+        return None
+    if not _holds(points, old.points):
+        return None
+    ranked = explained_again(points, old.ranked, spread, soft=soft)
+    if len(ranked) < 2 or ranked[0].kind != old.ranked[0].kind or _lead(ranked) < SURE:
+        return None
+    return Group(points, ranked, spread, old.n_thorough)
+
+
+def _lead(ranked: list[Candidate]) -> float:
+    """Return by how much the best explanation is ahead of the best one of another kind."""
+    return next((c.cost for c in ranked if c.kind != ranked[0].kind), float("inf")) - ranked[0].cost
+
+
+def _holds(points: Floats, fewer: Floats) -> bool:
+    """Tell whether all of the fewer points are among the points; in both no point stands twice."""
+    both = np.vstack([points, fewer])
+    return len(np.unique(both, axis=0)) == len(points)
 
 
 def regrouped(
