@@ -73,7 +73,7 @@ HELP = {
     ],
     "study": [
         "GeoJSON files, or folders of them (default: the paper's 34 maps)",
-        "on way-points, or driven by a script, or both (default: automatic)",
+        "on way-points, along scripted drives, or both (default: automatic)",
         "the method: ours, as published, or both (default: both)",
         "number of processes (default: one on each core)",
         "dask cluster that does the work (default: this machine)",
@@ -255,7 +255,7 @@ def test_study_drives(capsys):
     assert main([*words, "manual"]) == 0
     out, err = capsys.readouterr()
     assert [line[:7] for line in out.splitlines() if line.startswith("Table")] == ["Table 3", "Table 4"]
-    assert "\nOurs were driven by a script" in out
+    assert "\nOurs are scripted drives: " in out
     assert re.search(r"\nseen on 60 % or more: 3 of 3 shapes, on 2 maps\n ROBUST within 5 mm  [01]\.\d{3} ", out)
     names = ["table-3.csv", "table-4.csv", "rows.csv", "seen.csv", JOURNAL]
     assert f"Wrote  {', '.join(str(Path('out', name)) for name in names)}\n" in out

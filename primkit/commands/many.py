@@ -22,7 +22,7 @@ STUDY_TEXT = "map many boards: the paper's Tables 1 to 4 beside ours"
 STUDY_EXAMPLES = """\
 examples:
   primkit study                          34 maps, both methods: Tables 1 and 2
-  primkit study --movement manual        the same, driven: Tables 3 and 4
+  primkit study --movement manual        scripted drives: Tables 3 and 4
   primkit study --jobs 1                 one process: the most comparable times
   primkit study --maps maps --out mine   every map in a folder of yours
   primkit study --scheduler tcp://192.168.0.2:8786
@@ -31,7 +31,7 @@ examples:
 Once stopped, a study continues when the same command is given again: finished maps
 are in journal.jsonl. --fresh starts anew.
 """
-SCRIPTED = "Ours were driven by a script that goes around each shape and leaves parts out, and by nobody."
+SCRIPTED = "Ours are scripted drives: a program steered them around the shapes and left parts out; nobody drove."
 ACCURACY_TEXT = "how right, against noise, shapes, scans, strays"
 ACCURACY_EXAMPLES = """\
 examples:
@@ -48,7 +48,7 @@ def study_options(parser: Parser) -> None:
     parser.option(
         "--maps", "PATH", path, None, "GeoJSON files, or folders of them", nargs="+", shown="the paper's 34 maps"
     )
-    parser.choice("--movement", ("automatic", "manual", "both"), "on way-points, or driven by a script, or both")
+    parser.choice("--movement", ("automatic", "manual", "both"), "on way-points, along scripted drives, or both")
     _many_options(parser, "the methods", "tables and rows as CSV")
     parser.add_argument("--fresh", action="store_true", help="forget the journal of earlier runs")
 
