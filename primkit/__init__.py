@@ -29,6 +29,7 @@ _STORY = {
     "raycast": ("cast_rays",),
     "lidar": ("Lidar", "Scans", "scan", "scan_blocks"),
     "grid": ("Grid",),
+    "changes": ("MovingGrid",),
     "segmentation": ("segment", "kmeans", "count_by_silhouette", "link"),
     "ransac": ("run_ransac", "trials_needed"),
     "lines": ("Line", "fit_line", "find_lines"),
@@ -72,6 +73,7 @@ def __dir__() -> list[str]:
 
 if TYPE_CHECKING:
     from . import checks, widgets
+    from .changes import MovingGrid
     from .circles import find_circle, fit_circle
     from .evaluation import Report, evaluate, match
     from .explorer import Exploration, explore

@@ -19,7 +19,19 @@ PACKAGE = ROOT / "primkit"
 # The story: a room (a module, or a folder of them) imports only rooms above it. The table of contents, __init__, loads
 # rooms on first use; who imports it from inside could reach everything, so only the command line may.
 ORDER = (
-    *("arguments", "shapes", "world", "robot", "raycast", "lidar", "grid", "segmentation", "ransac", "lines"),
+    *(
+        "arguments",
+        "shapes",
+        "world",
+        "robot",
+        "raycast",
+        "lidar",
+        "grid",
+        "changes",
+        "segmentation",
+        "ransac",
+        "lines",
+    ),
     *(
         "circles",
         "outlines",
