@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import primkit as pk
 from primkit.changes import BEFORE_A_HIT, ENOUGH, MovingGrid
 from primkit.lidar import Scans
+from primkit.plots import plot_change
 from primkit.robot import BODY, clearance
 from primkit.world import gap_between
 
@@ -210,3 +212,15 @@ def test_add_failure_leaves_the_grid_as_it_was(seen, sentence):
 def test_lidar_failure():
     with pytest.raises(ValueError, match=exactly("lidar must be a Lidar, such as Lidar(), got int")):
         MovingGrid(lidar=100)
+
+
+def test_the_picture_tells_ghosts_from_points():
+    before, after = pk.World([pk.Circle((0.2, 0), 0.05)]), pk.World([pk.Circle((-0.2, 0), 0.05)])
+    points = np.vstack([before.shapes[0].outline(30), after.shapes[0].outline(50)])
+    ax = plot_change(before, after, points, Figure().subplots())
+    assert ax.get_title(loc="left").replace("\n", " ") == "30 of 80 points are ghosts"
+    here, ghosts = (line.get_xydata() for line in ax.get_lines())
+    assert (len(here), len(ghosts)) == (50, 30)
+    assert ghosts[:, 0].min() > 0
+    with pytest.raises(ValueError, match=exactly("before must be of type World, got list")):
+        plot_change([], after, points)

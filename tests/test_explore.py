@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import primkit as pk
 from primkit.explorer.search import Exploration
@@ -11,6 +12,7 @@ from primkit.explorer.seen import LEAST_PLACE, SQUARE, SeenMap, joined, open_out
 from primkit.explorer.views import EVERY, next_view, shown_from
 from primkit.explorer.ways import ROOM, forward, turning, ways_from, wheels_along
 from primkit.lidar import Scans
+from primkit.plots import plot_tour
 from primkit.robot import BODY, FASTEST, PERIOD, advance, clearance, drive, moved
 
 from .helpers import exactly
@@ -350,3 +352,14 @@ def test_the_next_view_is_the_nearest_that_shows_enough():
     board.free[view.square[0] + 5, :] = False  # now nearer than the sensor's least distance
     there = next_view(worth, opaque, ways_from(board, board.centers[50, 50]), pk.Lidar(), been)
     assert there.square[0] <= view.square[0] - EVERY or there.square[0] > view.square[0] + 5
+
+
+def test_the_picture_shows_the_way_and_the_scans(tours):
+    world, tour = tours[0]
+    ax = plot_tour(world, tour, Figure().subplots())
+    assert ax.get_title(loc="left").replace("\n", " ") == f"{tour.n_scans} scans in {tour.robot_time:.0f} s: {tour.why}"
+    lines = {line.get_label(): line.get_xydata() for line in ax.get_lines()}
+    np.testing.assert_array_equal(lines["way"], tour.path[:, :2])
+    np.testing.assert_array_equal(lines["scan"], tour.poses[:, :2])
+    with pytest.raises(ValueError, match=exactly("tour must be of type Exploration, got int")):
+        plot_tour(world, 3)

@@ -24,6 +24,7 @@ The rooms, each of which imports only those before it:
 ``found.py``     the shapes that were found, over the truth
 ``story.py``     all of them in one figure, and the file it goes to
 ``driving.py``   how the map grows on a drive
+``movement.py``  the way of an exploration; what became of a shape that was moved
 ``accuracy.py``  a study's accuracy against noise, shapes, scans and strays
 ===============  ==================================================
 
@@ -35,6 +36,7 @@ from .accuracy import PANELS, plot_accuracy
 from .driving import plot_drive
 from .found import plot_found
 from .look import KIND_COLORS, KIND_MARKERS
+from .movement import plot_change, plot_tour
 from .pictures import plot_clusters, plot_points, plot_scan, plot_world
 from .story import plot_story, save_figure
 
@@ -46,6 +48,8 @@ __all__ = [
     "plot_found",
     "plot_story",
     "plot_drive",
+    "plot_tour",
+    "plot_change",
     "plot_accuracy",
     "save_figure",
     "PANELS",
