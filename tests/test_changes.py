@@ -125,6 +125,15 @@ def test_a_beam_that_goes_through_clears(reach, n_left):
     assert len(grid) == n_left
 
 
+@pytest.mark.parametrize(("newcomer", "left"), [(0.17, [170]), (0.12, [120, 200])], ids=["just behind", "far behind"])
+def test_what_a_newcomer_hides_is_given_up(newcomer, left):
+    """A wall that came 3 cm nearer has taken its old place with it; what is 8 cm behind may well still be there."""
+    grid = MovingGrid()
+    for reach in (0.2, newcomer, newcomer):
+        grid.add(one_scan(reach))
+    assert grid.cells[:, 0].tolist() == left
+
+
 @pytest.mark.parametrize(("q", "stays"), [(0.2, False), (0.26, False), (0.28, True)])
 def test_a_corner_may_hide_between_two_beams_at_the_end_of_their_reach(q, stays):
     """At q it would have to be 13 % of q long before its sides meet the beams, which end at 0.3 m."""
