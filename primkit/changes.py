@@ -180,15 +180,20 @@ class MovingGrid(Grid):
 
     def _shaken(self) -> Bools:
         """Tell which cells hang together with many that were given up, and were not seen since, shape (N,)."""
+        from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components
         from scipy.spatial import cKDTree
 
         left = self.points()
         places = self.to_points(_at(self._gone["key"]))
         bare = np.ones(len(places), dtype=bool) if len(left) == 0 else cKDTree(left).query(places)[0] > BARE
-        gone = self._gone[bare]
-        tree = cKDTree(np.vstack([places[bare], left]))
-        n, part = connected_components(tree.sparse_distance_matrix(tree, LINKED), directed=False)
+        self._gone = gone = self._gone[bare]
+        if len(gone) < FEW:
+            return np.zeros(len(left), dtype=bool)
+        together = np.vstack([places[bare], left])
+        pairs = cKDTree(together).query_pairs(LINKED, output_type="ndarray")
+        links = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(together), len(together)))
+        n, part = connected_components(links, directed=False)
         part_gone, part_left = part[: len(gone)], part[len(gone) :]
         last = np.zeros(n, dtype=np.int64)
         np.maximum.at(last, part_gone, gone["seen"])
