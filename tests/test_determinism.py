@@ -43,6 +43,7 @@ grid = pk.Grid()
 grid.add(scans)
 points = grid.points()
 few = pk.Settings(grouping="kmeans", method="published", line_trials=300)
+tour, route = pk.explore(world, noisy, rng=10, most_scans=6), pk.scripted_route(world, rng=11)
 results = {
     "random_world": [world, pk.random_world(5, style="free", rng=3)],
     "scan": scans,
@@ -54,6 +55,8 @@ results = {
     "find_lines": pk.find_lines(points, 0.005, rng=6),
     "find_circle": pk.find_circle(points, 0.005, rng=7),
     "measure_shape": pk.measure_shape(points[pk.link(points) == 0], 0.002, rng=8),
+    "explore": [tour.poses, tour.scans, tour.found, tour.wheels],
+    "scripted_route": [route.start, route.wheels],
     "find_shapes": [pk.find_shapes(points, rng=9), pk.find_shapes(points, 3, settings=few, rng=9)],
 }
 for name, value in results.items():
