@@ -22,6 +22,7 @@ The rooms, each of which imports only those before it:
 ``rays.py``     lesson 01: a beam meets a wall, or a circle
 ``cells.py``    lesson 02: metres to a cell, a scan into the set of cells
 ``groups.py``   lesson 03: the two steps of K-Means, the silhouette
+``walls.py``    what lesson 04's functions are tried on
 ``edges.py``    lesson 04: a line, its inliers, its fit, the loop around them
 ``arcs.py``     lesson 05: a circle through many points, and its RMS
 ``naming.py``   lesson 06: corners, sides and centre, a fair choice
