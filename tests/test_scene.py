@@ -21,6 +21,7 @@ def wandering(n_steps, rng=0):
 
     Send it whether the robot was stopped.
     """
+    ways = [["forward"], ["forward", "left"], ["forward", "right"]]
     rng = np.random.default_rng(rng)
     held, left = ["forward"], 0
     for _ in range(n_steps):
@@ -29,10 +30,13 @@ def wandering(n_steps, rng=0):
         if stopped:
             held, left = ["back", "left"], int(rng.integers(5, 12))
         elif left <= 0:
-            held, left = [["forward"], ["forward", "left"], ["forward", "right"]][rng.integers(3)], int(rng.integers(20))
+            held, left = (
+                [["forward"], ["forward", "left"], ["forward", "right"]][rng.integers(3)],
+                int(rng.integers(20)),
+            )
 
 
-def wander(state, n_steps, look=lambda state: None):
+def wander(state, n_steps):
     """Drive; return what each step took, in seconds of processor time."""
     hand, taken, stopped = wandering(n_steps), [], None
     for _ in range(n_steps):
@@ -40,7 +44,6 @@ def wander(state, n_steps, look=lambda state: None):
         start = time.process_time()
         stopped = state.step(wheels).stopped
         taken.append(time.process_time() - start)
-        look(state)
     return np.array(taken)
 
 
@@ -228,10 +231,19 @@ def test_bad_input_is_refused(world, arguments, message):
 
 def test_a_page_gets_only_what_is_new(scene):
     scene.answer({"do": "step", "held": ["forward"]})
-    ((message, _),) = scene.sent
+    (message, _), (mapped, _) = scene.sent
     assert {"pose", "ranges", "cells"} <= message.keys()
-    assert not {"truth", "board", "unseen"} & message.keys()
+    assert mapped["done"]
+    assert not {"truth", "board", "unseen"} & (message.keys() | mapped.keys())
     assert len(message["cells"]) < 100
+
+
+def test_the_picture_does_not_wait_for_the_shapes(scene):
+    sent_before = []
+    look = scene.state.map
+    scene.state.map = lambda: sent_before.append(len(scene.sent)) or look()
+    scene.answer({"do": "step", "held": ["forward"]})
+    assert sent_before == [1]
 
 
 def test_a_new_page_gets_all_that_was_seen(scene):
@@ -284,7 +296,7 @@ def test_the_scene_says_what_it_is(scene):
     scene.answer({"do": "undo"})
     assert scene.state.n_scans == 1
     scene.answer({"do": "automatic"})
-    assert scene.sent[-1][0]["say"].startswith("Automatic: ")
+    assert scene.sent[-1][0]["automatic"]["words"].startswith("Automatic: ")
 
 
 def test_an_outline_is_drawn_as_it_was_seen():
@@ -293,7 +305,7 @@ def test_an_outline_is_drawn_as_it_was_seen():
     x, y = np.arange(0, 0.2, 0.001), np.arange(0, 0.1, 0.001)
     points = np.vstack([np.column_stack([x, 0 * x]), np.column_stack([0 * y + 0.2, y])])
     told = drawn(Detection(shape, points, 0.0, dimension_std=(0.001, float("inf"))))
-    assert told["name"] == "rectangle, 200 × ? mm"
+    assert told["name"] == "rectangle, 200 x ? mm"
     for seen, stretch in told["stretches"]:
         inner = np.array(stretch[2:-2]).reshape(-1, 2) / 10_000
         on = (np.abs(inner[:, 1]) < 0.013) | (np.abs(inner[:, 0] - 0.2) < 0.013)

@@ -1,7 +1,7 @@
 """Widgets: pictures that change while you move a slider; one for each lesson.
 
-Beside the story, and the only user of ipywidgets and anywidget. A lesson shows its slider with ``pk.widgets.rays()``, and below it
-the same picture for a few named settings, which needs no Python behind it: ``pk.widgets.rays().twin()``.
+Beside the story, and the only user of ipywidgets and anywidget. A lesson shows its slider with ``pk.widgets.rays()``,
+and below it the same picture for a few named settings, which needs no Python behind it: ``pk.widgets.rays().twin()``.
 
 In:  a lesson's values: beams, noise, a seed.
 Out: an ``Explorer``; its ``draw(**values)`` returns the picture as SVG text.

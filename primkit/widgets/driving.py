@@ -149,11 +149,12 @@ class DriveState:
         self._memory: Memory = {}
         self._cells: set[tuple[int, int]] = set()
         self._n_mapped = 0  # cells that the shapes were found among
+        self._rests = True  # stands, or sees nothing new
         self._look()
-        self._map()
+        self.map()
 
     def step(self, wheels: ArrayLike = STANDING) -> Step:
-        """Turn the wheels for a period, scan, and map.
+        """Turn the wheels for a period, scan, and map: ``move`` and ``map`` together.
 
         Parameters
         ----------
@@ -170,16 +171,26 @@ class DriveState:
         ValueError
             If the wheels are too fast; all then stays as it was.
         """
-        pose, stopped = advance(self.world, self.pose, wheels, self.lidar.period)
+        new = self.move(wheels)
+        return Step(new, self.stopped, self.map())
+
+    def move(self, wheels: ArrayLike = STANDING) -> Ints:
+        """Turn the wheels for a period and scan; return the cells that are new, shape (M, 2)."""
+        self.pose, self.stopped = advance(self.world, self.pose, wheels, self.lidar.period)
         before = self.scan
-        self.pose, self.stopped = pose, stopped
         new = self._look()
-        rests = len(new) == 0 or not np.any(wheels)
-        mapped = self._n_mapped < len(self.grid) and (rests or len(self.grid) >= GROWN * self._n_mapped)
-        if mapped:
-            self._map()
+        self._rests = len(new) == 0 or not np.any(wheels)
         self._write(before, wheels)
-        return Step(new, stopped, mapped)
+        return new
+
+    def map(self) -> bool:
+        """Look for shapes, if there is enough to look at; tell whether that was so."""
+        n, before = len(self.grid), self._n_mapped
+        if n == before or (n < GROWN * before and not self._rests):
+            return False
+        self.found = find_shapes(self.grid.points(), memory=self._memory, rng=self.seed)
+        self._n_mapped = n
+        return True
 
     def _look(self) -> Ints:
         """Scan from where the robot is, and return the cells that are new, shape (M, 2)."""
@@ -191,10 +202,6 @@ class DriveState:
             self._cells |= hit
             self.grid.add(self.scan)
         return np.array(sorted(hit), dtype=np.int64).reshape(-1, 2)
-
-    def _map(self) -> None:
-        self.found = find_shapes(self.grid.points(), memory=self._memory, rng=self.seed)
-        self._n_mapped = len(self.grid)
 
     @property
     def time(self) -> float:

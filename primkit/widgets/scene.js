@@ -18,8 +18,10 @@ const PERIOD = 100; // ms: a step takes a tenth of a second
 const SOON = 90; // ms: timers are not exact
 const LATE = 5000; // ms: an answer that has not come by then will not come; the kernel may have been restarted
 const FAR = 1e-4; // m: lengths come in tenths of a millimetre
-const AWAY = "Click here, or tab to it, to drive: W A S D or the arrow keys, two at once.";
-const HERE = "You drive: W A S D or the arrow keys. Click elsewhere, or Tab, to leave; the robot then stops.";
+const SMALL = 400; // px: in narrower pictures shapes have their kind written on them, and not their sizes
+const LABEL = "600 12px system-ui, sans-serif";
+const AWAY = "Click here, then drive with W A S D or the arrow keys, two at once.";
+const HERE = "You drive: W A S D or the arrow keys. A click elsewhere or Tab stops.";
 const LEGEND = [
   "Blue lines: beams. Dots: cells that were hit. Solid outline: seen. Dashed: only supposed.",
   "Hatched: not seen yet. Grey: the truth. +: way-points of the automatic movement.",
@@ -55,7 +57,7 @@ function build(el) {
     const pressed = toggles ? { "aria-pressed": "false" } : {};
     return made(others, "button", word, { "type": "button", ...pressed }, label);
   });
-  parts.automatic = made(root, "p", "automatic");
+  parts.automatic = made(root, "p", "automatic", { "role": "status", "aria-live": "polite" });
   parts.record = made(root, "p", "record");
   made(root, "p", "legend", {}, LEGEND);
   return parts;
@@ -175,7 +177,7 @@ function listen(parts, clock, ask) {
 // What the page knows, and its picture.
 
 function learn(known, message, buffers) {
-  const { cells = [], board, unseen, ...rest } = message;
+  const { cells = [], board, unseen, say, done, ...rest } = message;
   if (board) Object.assign(known, { board, cells: [], way: [] });
   known.cells.push(...cells);
   Object.assign(known, rest);
@@ -315,23 +317,26 @@ class Picture {
   }
 
   labels(shapes, { inks }) {
-    const font = "600 12px system-ui, sans-serif", { pen } = this;
-    for (const { kind, name, place } of shapes) {
-      const [x, y] = this.at(this.tenths([place])[0]);
-      name.split(", ").reduce((lines, part, i) => {
-        if (i < 2) lines.push(part);
-        else lines[1] += `, ${part}`;
-        return lines;
-      }, []).forEach((text, i) => {
-        pen.font = font;
-        const half = pen.measureText(text).width / 2 + 2; // a label stays on the board
-        const middle = Math.min(Math.max(x, this.low + half), this.width - 8 - half);
-        Object.assign(pen, { strokeStyle: "#ffffff", lineWidth: 4, lineJoin: "round", textAlign: "center" });
-        pen.textBaseline = "middle";
-        pen.strokeText(text, middle, y - 8 + 16 * i);
-        this.words(text, [middle, y - 8 + 16 * i], inks[kind], "center", font);
-      });
-    }
+    shapes.forEach((shape) => this.label(shape, inks[shape.kind]));
+  }
+
+  label({ name, place, stretches }, color) {
+    const { pen } = this, comma = name.indexOf(", ");
+    const lines = this.width < SMALL ? [name.slice(0, comma)] : [name.slice(0, comma), name.slice(comma + 2)];
+    pen.font = LABEL;
+    const half = Math.max(...lines.map((text) => pen.measureText(text).width)) / 2 + 3;
+    const [across, down] = this.at(this.tenths([place])[0]);
+    const outline = stretches.flatMap(([, points]) => this.tenths(points)).map((point) => this.at(point));
+    const top = Math.min(...outline.map(([, y]) => y));
+    const fits = outline.every(([x, y]) => Math.abs(x - across) > half || Math.abs(y - down) > 16);
+    const x = Math.min(Math.max(across, this.low + half), this.width - 8 - half); // a label stays on the board
+    const first = fits ? down - 8 * (lines.length - 1) : Math.max(top - 16 * lines.length + 4, 16); // or above it
+    lines.forEach((text, i) => {
+      Object.assign(pen, { strokeStyle: "#ffffff", lineWidth: 4, lineJoin: "round", textAlign: "center", font: LABEL });
+      pen.textBaseline = "middle";
+      pen.strokeText(text, x, first + 16 * i);
+      this.words(text, [x, first + 16 * i], color, "center", LABEL);
+    });
   }
 
   robot([x, y, heading], { body }, { colors }) {
@@ -375,7 +380,7 @@ function render({ model, el }) {
   const soon = () => (due ||= requestAnimationFrame(show));
 
   const hear = (message, buffers) => {
-    clock.answered();
+    if (message.done) clock.answered();
     learn(known, message, buffers);
     if (message.say) parts.says.textContent = message.say;
     soon();

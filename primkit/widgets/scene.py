@@ -31,7 +31,7 @@ from ..plots.look import GREY, INK, KIND_COLORS, KIND_INKS, ORANGE, PALE, SKY
 from ..robot import BODY, teleport_poses
 from ..shapes import Circle, Shape
 from ..world import World
-from .driving import DriveState, Step, wheels_for
+from .driving import DriveState, wheels_for
 
 Floats = NDArray[np.float64]
 Message = dict[str, Any]
@@ -42,9 +42,7 @@ COLORS = {"ink": INK, "grey": GREY, "pale": PALE, "beam": SKY, "hit": ORANGE}
 FAR = 1e-4  # m: lengths go to the page in tenths of a millimetre
 
 
-def drive_scene(
-    world: World, lidar: Lidar | None = None, *, journal: str | Path | None = None, rng: int = 0
-) -> Scene:
+def drive_scene(world: World, lidar: Lidar | None = None, *, journal: str | Path | None = None, rng: int = 0) -> Scene:
     """Show a board on which the robot is driven by hand: W A S D, the arrow keys, or the buttons.
 
     Parameters
@@ -117,9 +115,9 @@ class Scene(anywidget.AnyWidget):
         match asked:
             case {"do": "step", "held": list(held)}:
                 if not self.paused:
-                    self._send_step(self.state.step(wheels_for(held)))
+                    self._send_step(held)
                 else:
-                    self.send({"say": "Paused: the robot stands still until you go on."})
+                    self.send({"say": "Paused: the robot stands still until you go on.", "done": True})
             case {"do": "hello"}:
                 self._send_all()
             case {"do": "undo"}:
@@ -138,27 +136,39 @@ class Scene(anywidget.AnyWidget):
             case {"do": "automatic"}:
                 self._send_comparison()
 
-    def _send_step(self, step: Step) -> None:
-        message = self._now() | {"cells": step.new_cells.tolist()}
-        shapes = [drawn(one) for one in self.state.found] if step.mapped else self._shown
-        if shapes != self._shown:
-            message |= {"shapes": shapes, "say": _news(self._shown, shapes)}
-            self._shown = shapes
-        if step.stopped:
+    def _send_step(self, held: list[str]) -> None:
+        """Make a step; the page gets the picture before shapes are looked for, and the shapes when they are there."""
+        state = self.state
+        new = state.move(wheels_for(held))
+        message = self._now() | {"cells": new.tolist()}
+        if state.stopped:
             message["say"] = "Something is in the way: the robot only turns."
         self.send(message)
+        self.send(self._mapped() | {"done": True})
         if self.shows_unseen:
             self._send_unseen()
+
+    def _mapped(self) -> Message:
+        """Look for shapes, if it is time to; return what is new about them."""
+        if not self.state.map():
+            return {}
+        before, self._shown = self._shown, [drawn(one) for one in self.state.found]
+        if self._shown == before:
+            return {}
+        return {"shapes": self._shown, "score": self._score(), "say": _news(before, self._shown)}
+
+    def _score(self) -> str:
+        state = self.state
+        driven = f"{state.time:.1f} s · {state.n_scans:,} scan{'s' * (state.n_scans != 1)}"
+        return f"{driven} · {len(state.found)} found · score {state.score:.2f}"
 
     def _now(self) -> Message:
         """Return what every step changes: pose, ranges, time, score."""
         state = self.state
         ranges = [round(r / FAR) if np.isfinite(r) else -1 for r in state.scan.ranges[0].tolist()]
-        found = f"{len(state.found)} found · score {state.score:.2f}"
-        score = f"{state.time:.1f} s · {state.n_scans:,} scan{'s' * (state.n_scans != 1)} · {found}"
         record = state.trouble or (f"recording {state.record.name}" if state.record else "")
         pose = [round(float(value), 5) for value in state.pose]
-        return {"pose": pose, "ranges": ranges, "scans": state.n_scans, "score": score, "record": record}
+        return {"pose": pose, "ranges": ranges, "scans": state.n_scans, "score": self._score(), "record": record}
 
     def _send_all(self, say: str = "") -> None:
         """Send all that there is: to a page that knows nothing, or shall forget what it knows."""
@@ -190,7 +200,7 @@ class Scene(anywidget.AnyWidget):
             found = f"{run.n_found} shape{'s' * (run.n_found != 1)}"
             words = f"Automatic: {run.n_scans} way-points, {found} found, score {run.score:.2f}"
             self._compared = {"words": words, "places": _tenths(teleport_poses(self.state.world)[:, :2])}
-        self.send({"automatic": self._compared, "say": f"{self._compared['words']}."})
+        self.send({"automatic": self._compared})
 
     def close(self) -> None:
         """Take the scene from the page, and close the journal."""
@@ -249,7 +259,7 @@ def _name(one: Detection) -> str:
     if isinstance(one.shape, Circle):
         return f"circle, radius {lengths[0]} mm"
     if one.kind == "rectangle":
-        return f"rectangle, {' × '.join(lengths)} mm"
+        return f"rectangle, {' x '.join(lengths)} mm"
     return f"{one.kind}, sides {', '.join(lengths)} mm"
 
 

@@ -60,7 +60,7 @@ class Seat:
         return self.root.locator("canvas").evaluate("(canvas) => canvas.toDataURL()")
 
     def button(self, name):
-        return self.root.get_by_role("button", name=name)
+        return self.root.get_by_role("button", name=name, exact=True)
 
     def after(self, scans):
         """Wait until the page shows that many scans or more."""
@@ -153,7 +153,7 @@ def test_the_map_grows_and_shapes_get_their_names(seat, screenshots):
     assert seat.root.locator("[aria-live=polite]").inner_text()
     seat.button("What have I not seen yet?").click()
     seat.button("Compare: automatic").click()
-    seat.root.locator(".automatic", has_text="way-points").wait_for()
+    seat.root.locator("p.automatic", has_text="way-points").wait_for()
     if screenshots:
         for width in (WIDE, NARROW):
             seat.page.set_viewport_size({"width": width, "height": 1000})
