@@ -30,10 +30,7 @@ def wandering(n_steps, rng=0):
         if stopped:
             held, left = ["back", "left"], int(rng.integers(5, 12))
         elif left <= 0:
-            held, left = (
-                [["forward"], ["forward", "left"], ["forward", "right"]][rng.integers(3)],
-                int(rng.integers(20)),
-            )
+            held, left = ways[rng.integers(3)], int(rng.integers(20))
 
 
 def wander(state, n_steps):

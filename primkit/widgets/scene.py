@@ -9,7 +9,7 @@ Out: ``Scene``, a widget for JupyterLab and Voila; its ``state`` is a ``DriveSta
 Scene: 0.0 s driven, 1 scan, 0 shapes found
 >>> scene.close()
 
-The page (``scene.js``) has the clock: while a key is held it asks for a step ten times a second, one at a time, and
+The page (``scene.js``, ``board.js``) has the clock: while a key is held it asks for a step ten times a second, one at a time, and
 the kernel answers each with what is new. So nothing runs on when nobody drives, and a slow computer drives slowly
 instead of lagging behind. Nothing is drawn that the robot has not measured, unless the truth is switched on.
 """
@@ -36,8 +36,9 @@ from .driving import DriveState, wheels_for
 Floats = NDArray[np.float64]
 Message = dict[str, Any]
 
-FRONT = Path(__file__).parent
-PAGE, STYLE = ((FRONT / f"scene.{ending}").read_text(encoding="utf-8") for ending in ("js", "css"))
+BOARD, PAGE, STYLE = (
+    Path(__file__).with_name(name).read_text(encoding="utf-8") for name in ("board.js", "scene.js", "scene.css")
+)
 COLORS = {"ink": INK, "grey": GREY, "pale": PALE, "beam": SKY, "hit": ORANGE}
 FAR = 1e-4  # m: lengths go to the page in tenths of a millimetre
 
@@ -87,7 +88,7 @@ class Scene(anywidget.AnyWidget):
         The robot and what it knows.
     """
 
-    _esm = PAGE
+    _esm = f"{BOARD}\n{PAGE}"
     _css = STYLE
 
     def __init__(self, state: DriveState) -> None:

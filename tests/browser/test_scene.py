@@ -150,7 +150,7 @@ def test_the_map_grows_and_shapes_get_their_names(seat, screenshots):
     assert "score 0.00" not in seat.score
     label = seat.root.locator("canvas").get_attribute("aria-label")
     assert any(kind in label for kind in ("circle", "triangle", "rectangle", "pentagon"))
-    assert seat.root.locator("[aria-live=polite]").inner_text()
+    assert seat.root.locator("p.says[aria-live=polite]").inner_text()
     seat.button("What have I not seen yet?").click()
     seat.button("Compare: automatic").click()
     seat.root.locator("p.automatic", has_text="way-points").wait_for()
