@@ -9,9 +9,11 @@ Out: ``Scene``, a widget for JupyterLab and Voila; its ``state`` is a ``DriveSta
 Scene: 0.0 s driven, 1 scan, 0 shapes found
 >>> scene.close()
 
-The page (``scene.js``, ``board.js``) has the clock: while a key is held it asks for a step ten times a second, one at a time, and
-the kernel answers each with what is new. So nothing runs on when nobody drives, and a slow computer drives slowly
-instead of lagging behind. Nothing is drawn that the robot has not measured, unless the truth is switched on.
+The page (``scene.js``, ``board.js``) has the clock: while a key is held it asks for a step ten times a second, one at a
+time, and the kernel answers each with what is new. So nothing runs on when nobody drives, and a slow computer drives
+slowly instead of lagging behind. Without noise a look for shapes takes some hundredths of a second; with much of it,
+2 mm say, it takes longer than a step, and the robot waits for it. Nothing is drawn that the robot has not measured,
+unless the truth is switched on; the score knows the truth, too.
 """
 
 from __future__ import annotations
