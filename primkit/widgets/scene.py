@@ -216,12 +216,12 @@ def drawn(one: Detection) -> Message:
 
     Examples
     --------
-    Half of a circle was seen:
+    Half of a circle was seen; the last stretch closes on the first:
 
     >>> circle = Circle((0, 0), 0.1)
     >>> told = drawn(Detection(circle, circle.outline(200)[:101], 0.0, dimension_std=(0.001,)))
     >>> told["name"], [seen for seen, _ in told["stretches"]]
-    ('circle, radius 100 mm', [True, False])
+    ('circle, radius 100 mm', [True, False, True])
     """
     ring = _ring(one.shape)
     seen = _seen(ring, one.points)
