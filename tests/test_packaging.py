@@ -3,7 +3,7 @@
 import importlib.util
 import re
 import tomllib
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from types import ModuleType
 
 import pytest
@@ -48,6 +48,19 @@ def test_citation_has_the_project_s_version_and_licence() -> None:
 def test_library_has_the_project_s_version() -> None:
     contents = (ROOT / "primkit" / "__init__.py").read_text(encoding="utf-8").splitlines()
     assert f'__version__ = "{PROJECT["version"]}"' in contents
+
+
+def test_a_wheel_has_the_scene_s_front_end() -> None:
+    """What the modules read is installed with them: hatch takes all in the folder that git does not ignore."""
+    tool = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]
+    wheel = tool["hatch"]["build"]["targets"]["wheel"]
+    assert "primkit" in wheel["only-include"]
+    assert "exclude" not in wheel
+    front_end = [f"primkit/widgets/{name}" for name in ("board.js", "scene.js", "scene.css")]
+    assert all((ROOT / name).is_file() for name in front_end)
+    ignored = (ROOT / ".gitignore").read_text(encoding="utf-8").splitlines()
+    rules = [line.strip("/") for line in ignored if line and not line.startswith("#")]
+    assert [(name, rule) for name in front_end for rule in rules if PurePosixPath(name).match(rule)] == []
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,7 @@
 """Widgets: pictures that change while you move a slider; one for each lesson.
 
-Beside the story, and the only user of ipywidgets. A lesson shows its slider with ``pk.widgets.rays()``, and below it
-the same picture for a few named settings, which needs no Python behind it: ``pk.widgets.rays().twin()``.
+Beside the story, and the only user of ipywidgets and anywidget. A lesson shows its slider with ``pk.widgets.rays()``,
+and below it the same picture for a few named settings, which needs no Python behind it: ``pk.widgets.rays().twin()``.
 
 In:  a lesson's values: beams, noise, a seed.
 Out: an ``Explorer``; its ``draw(**values)`` returns the picture as SVG text.
@@ -23,6 +23,8 @@ The rooms, each of which imports only those before it:
 ``arcs.py``      lesson 05: the circles that five ways see in an arc
 ``naming.py``    lesson 06: candidates, what each costs, the chosen one
 ``scoring.py``   lesson 07: tolerance, weights, one-sided or two-sided
+``driving.py``   the robot under somebody's hand, and what it knows so far
+``scene.py``     ``drive_scene``: drive it with the keys, and watch its map grow
 ===============  ==================================================
 """
 
@@ -34,6 +36,7 @@ from .edges import edges
 from .groups import groups
 from .naming import naming
 from .rays import rays
+from .scene import Scene, drive_scene
 from .scoring import scoring
 from .slider import Choice, Explorer, Slider, explore
 
@@ -49,6 +52,8 @@ __all__ = [
     "arcs",
     "naming",
     "scoring",
+    "drive_scene",
+    "Scene",
     "explore",
     "Explorer",
     "Slider",
