@@ -44,6 +44,9 @@ grid.add(scans)
 points = grid.points()
 few = pk.Settings(grouping="kmeans", method="published", line_trials=300)
 tour, route = pk.explore(world, noisy, rng=10, most_scans=6), pk.scripted_route(world, rng=11)
+scene = pk.drive_scene(world, noisy, rng=12).state
+for _ in range(20):
+    scene.step((6.0, 5.0))
 results = {
     "random_world": [world, pk.random_world(5, style="free", rng=3)],
     "scan": scans,
@@ -57,6 +60,7 @@ results = {
     "measure_shape": pk.measure_shape(points[pk.link(points) == 0], 0.002, rng=8),
     "explore": [tour.poses, tour.scans, tour.found, tour.wheels],
     "scripted_route": [route.start, route.wheels],
+    "drive_scene": [scene.grid.points(), scene.found],
     "find_shapes": [pk.find_shapes(points, rng=9), pk.find_shapes(points, 3, settings=few, rng=9)],
 }
 for name, value in results.items():
