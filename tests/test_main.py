@@ -283,7 +283,8 @@ def test_study_stopped_by_ctrl_c_continues(tmp_path):
     process = subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
     journal = tmp_path / JOURNAL
     for _ in range(3000):
-        if process.poll() is not None or (journal.exists() and b"\n" in journal.read_bytes()):
+        # A few rows: both workers have started, and know what to do when they are stopped.
+        if process.poll() is not None or (journal.exists() and journal.read_bytes().count(b"\n") >= 6):
             break
         time.sleep(0.01)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: the workers get it as well
