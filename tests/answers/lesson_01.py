@@ -164,7 +164,7 @@ ANSWERS = {
         },
         "error": {
             "parallel": (segment_parallel, "raised LinAlgError: Singular matrix"),
-            "no such name": (lambda origin, direction, a, b: orgin, "NameError: name 'orgin' is not defined"),  # noqa: F821
+            "no such name": (lambda origin, direction, a, b: orgin, "NameError: name 'orgin' is not defined"),  # noqa: F821 (a slip of the pen, on purpose)
             "too few arguments": (lambda origin, direction: 0.0, "TypeError"),
         },
     },
