@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import os
 import subprocess
 import sys
 import time
@@ -563,3 +564,24 @@ def test_robust_maps_the_bundled_boards_without_fault():
     suite = paper_suite()
     some = {name: suite[name] for name in ("1-circle", "2-01", "3-01", "4-01")}
     assert all(row.fair == PERFECT and row.count_right for row in run_study(some, {"ROBUST": ROBUST}, jobs=1))
+
+
+MASKS = """
+import signal
+from primkit.study.many import in_parallel
+
+def kept_out():
+    return signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+if __name__ == "__main__":
+    print(*[mask == {signal.SIGINT} for mask in in_parallel(kept_out, [()] * 4, jobs=2, progress=False, unit="row")])
+    print(kept_out() == set())
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Windows has no signal masks")
+def test_workers_do_not_hear_ctrl_c(tmp_path):
+    script = tmp_path / "masks.py"
+    script.write_text(MASKS)
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, cwd=ROOT, timeout=60)
+    assert done.stdout.split() == ["True"] * 5, done.stderr

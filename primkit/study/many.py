@@ -20,9 +20,11 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sized
+import warnings
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sized
 from contextlib import closing, contextmanager
 from functools import cache
+from multiprocessing import resource_tracker
 from pathlib import Path
 from threading import Thread
 from time import sleep
@@ -211,9 +213,9 @@ def _performed(
             failures.append(error)
 
     # Only as many experiments as the workers need next are made ahead: all of them are never in memory at once.
-    with _deaf_children():
+    with _deaf_children(jobs):
         running = Parallel(n_jobs=jobs, return_as="generator_unordered")(waiting())
-    with closing(running) as results:
+    with _ended_quietly(running) as results:
         for number, row in results:
             yield number, row, keys.pop(number)
     if failures:
@@ -221,19 +223,29 @@ def _performed(
 
 
 @contextmanager
-def _deaf_children() -> Iterator[None]:
+def _deaf_children(jobs: int | None) -> Iterator[None]:
     """Start processes that do not hear Ctrl-C: it is for their parent, which ends them without a word.
 
     A terminal sends the signal to all of them, and a process keeps the mask that it was started with.
     """
-    if not hasattr(signal, "pthread_sigmask"):  # Windows
+    if jobs == 1 or not hasattr(signal, "pthread_sigmask"):  # no children; Windows
         yield
         return
+    resource_tracker.ensure_running()  # it comes with the first child, and up to Python 3.12 it lifts the mask
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _ended_quietly(running: Generator[T, None, None]) -> Iterator[Generator[T, None, None]]:
+    """Close what is running in the end; joblib's advice on work that is cut short is not for who pressed Ctrl-C."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message=".*adjusting the input task iterator", category=UserWarning)
+        with closing(running) as results:
+            yield results
 
 
 def in_parallel(
@@ -243,10 +255,10 @@ def in_parallel(
     from joblib import Parallel, delayed
 
     work = list(work)
-    with _deaf_children():
+    with _deaf_children(jobs):
         tasks = (delayed(_as_child)(os.getpid(), function, *arguments) for arguments in work)
         running = Parallel(n_jobs=jobs, return_as="generator")(tasks)
-    with closing(running) as results, _bar(len(work), progress, unit) as bar:
+    with _ended_quietly(running) as results, _bar(len(work), progress, unit) as bar:
         done = []
         for result in results:
             done.append(result)
