@@ -1,7 +1,9 @@
 """The live scene without a browser: what a drive by hand knows, what it sends to the page, and that it stays quick."""
 
+import threading
 import time
 import tracemalloc
+from concurrent.futures import Executor, Future
 
 import numpy as np
 import pytest
@@ -9,8 +11,11 @@ import pytest
 import primkit as pk
 from primkit.measure import Detection
 from primkit.robot import AXLE, FASTEST, WHEEL
-from primkit.widgets.driving import HELD, STANDING, DriveState, wheels_for
-from primkit.widgets.scene import Scene, drawn
+from primkit.widgets.driving import DriveState
+from primkit.widgets.finder import beside
+from primkit.widgets.keys import HELD, STANDING, wheels_for
+from primkit.widgets.scene import Scene
+from primkit.widgets.sketch import drawn
 
 STEP = 0.05  # s of processor time, which 95 of 100 steps do not exceed: half of the tenth of a second that there is
 TURN = 2 * WHEEL * 0.3 * FASTEST / AXLE  # rad/s
@@ -164,13 +169,157 @@ def test_the_memory_stays_flat(world):
     assert held[-1] - held[0] < 300_000  # bytes; the scans alone would be 250,000, and 2,000,000 with all they bring
 
 
-def test_the_automatic_movement_is_the_library_s(world):
-    run = DriveState(world).automatic()
+def test_the_automatic_movements_are_the_library_s(world):
+    state = DriveState(world)
+    state.step(wheels_for(["forward"]))
+    hand, points, tour = state.compare().runs
     grid = pk.Grid()
     grid.add(pk.scan(world, pk.teleport_poses(world)))
-    found = pk.find_shapes(grid.points(), rng=0)
-    assert (run.n_scans, run.n_found) == (len(pk.teleport_poses(world)), len(found))
-    assert run.score == pk.evaluate(found, world).weighted_accuracy
+    found, explored = pk.find_shapes(grid.points(), rng=0), pk.explore(world, rng=0)
+    assert (points.n_scans, points.n_found) == (len(pk.teleport_poses(world)), len(found))
+    assert points.score == pk.evaluate(found, world).weighted_accuracy
+    assert points.robot_time == pytest.approx(7.7)
+    assert (tour.n_scans, tour.robot_time, tour.n_found) == (
+        explored.n_scans,
+        explored.robot_time,
+        len(explored.found),
+    )
+    assert tour.score == pk.evaluate(list(explored.found), world).weighted_accuracy
+    assert (hand.n_scans, hand.robot_time, hand.score) == (2, pytest.approx(0.1), state.score)
+
+
+# Shapes are looked for beside the drive.
+
+
+class Later(Executor):
+    """An executor whose work is done when the test says so, or when somebody waits for it."""
+
+    def __init__(self):
+        self.work = []
+
+    def submit(self, fn, /, *args, **kwargs):
+        work = Work(lambda: fn(*args, **kwargs))
+        self.work.append(work)
+        return work
+
+    def work_one(self):
+        self.work.pop(0).do()
+
+
+class Work(Future):
+    def __init__(self, fn):
+        super().__init__()
+        self.fn = fn
+
+    def do(self):
+        if not self.done():
+            self.set_result(self.fn())
+
+    def result(self, timeout=None):
+        self.do()
+        return super().result(timeout)
+
+
+def ahead(state, n_steps):
+    """Drive onwards; return how many looks were fetched."""
+    return sum(state.step(wheels_for(["forward"])).mapped for _ in range(n_steps))
+
+
+def test_the_robot_does_not_wait_for_the_shapes(world):
+    state = DriveState(world, executor=(later := Later()))
+    later.work.clear()
+    before, known = state.found, state.n_scans
+    assert ahead(state, 12) == 0
+    assert len(later.work) == 1, "one look at a time"
+    assert (state.n_scans, state.n_scans_found, state.found) == (known + 12, known, before)
+    later.work_one()
+    assert state.map()
+    asked_at = state.n_scans_found
+    assert known < asked_at < state.n_scans
+    assert len(later.work) == 1, "the next look takes what has come meanwhile"
+    later.work_one()
+    state.map()
+    assert state.n_scans_found == state.n_scans
+
+
+def test_in_the_end_it_does_not_matter_how_long_looks_took(world):
+    """The last look is afresh: the very shapes that find_shapes makes of the map."""
+    slow, quick = DriveState(world, executor=(later := Later())), DriveState(world)
+    for number, held in enumerate(["forward"] * 20 + ["left"] * 10):
+        for state in (slow, quick):
+            state.step(wheels_for([held]))
+        if number % 7 == 0:
+            later.work_one()
+    alone = pk.find_shapes(quick.grid.points(), rng=0)
+    for state in (slow, quick):
+        state.finish()
+        assert not state.looks
+        assert state.n_scans_found == state.n_scans
+        assert [one.shape for one in state.found] == [one.shape for one in alone]
+
+
+def test_a_look_at_what_was_undone_comes_to_nothing(world):
+    state = DriveState(world, executor=(later := Later()))
+    later.work.clear()
+    ahead(state, 12)
+    state.undo()
+    assert (state.n_scans, state.found) == (1, [])
+    later.work_one()  # the old look
+    assert not state.map(), "those shapes are from before"
+    state.finish()
+    assert state.n_scans_found == 1
+
+
+def test_a_thread_finds_what_the_drive_itself_finds(world):
+    own, threaded = DriveState(world), DriveState(world, executor=beside())
+    for state in (own, threaded):
+        ahead(state, 30)
+        state.finish()
+    threaded.close()
+    assert [one.kind for one in threaded.found] == [one.kind for one in own.found]
+
+
+def test_the_thread_ends_with_the_scene(world):
+    scene = pk.drive_scene(world)
+    names = [thread for thread in threading.enumerate() if thread.name.startswith("primkit-finder")]
+    scene.close()
+    for thread in names:
+        thread.join(10)
+    assert names
+    assert not any(thread.is_alive() for thread in names)
+
+
+def test_who_drives_hears_of_a_look_that_failed_and_drives_on(scene, monkeypatch):
+    def broken(*_args, **_kwargs):
+        raise ArithmeticError("lost count")
+
+    monkeypatch.setattr("primkit.widgets.finder.find_shapes", broken)
+    for _ in range(3):
+        scene.answer({"do": "step", "held": ["forward"]})
+    assert any("failed, the drive goes on: ArithmeticError: lost count" in (m.get("say") or "") for m, _ in scene.sent)
+    assert scene.state.n_scans == 4
+    with pytest.raises(ArithmeticError, match="lost count"):
+        ahead(scene.state, 3)
+    monkeypatch.undo()
+    scene.state.finish()
+    assert scene.state.n_scans_found == scene.state.n_scans
+
+
+def test_the_page_asks_on_until_the_last_look_is_done(world):
+    scene = Scene(DriveState(world, executor=(later := Later())))
+    scene.sent = []
+    scene.send = lambda content, buffers=None: scene.sent.append(content)
+    for _ in range(9):
+        scene.answer({"do": "step", "held": ["forward"]})
+    assert "shapes 9 scans old" in scene.sent[-2]["score"]
+    while later.work:
+        assert scene.sent[-1]["busy"]
+        later.work_one()
+        scene.answer({"do": "news"})
+        scene.answer({"do": "step", "held": []})
+    assert not scene.sent[-1]["busy"]
+    assert "old" not in scene.sent[-2]["score"]
+    scene.close()
 
 
 # The journal.
@@ -292,8 +441,21 @@ def test_the_scene_says_what_it_is(scene):
     assert repr(scene) == "Scene: 0.1 s driven, 2 scans, 1 shape found"
     scene.answer({"do": "undo"})
     assert scene.state.n_scans == 1
+
+
+def test_the_automatic_runs_are_shown_beside_the_drive(scene):
+    scene.answer({"do": "step", "held": ["forward"]})
     scene.answer({"do": "automatic"})
-    assert scene.sent[-1][0]["automatic"]["words"].startswith("Automatic: ")
+    told = scene.sent[-1][0]["automatic"]
+    head, *rows = told["table"]
+    assert head[:5] == ("", "scans", "robot time", "found", "score")
+    assert [row[0] for row in rows] == ["by hand", "way-points", "explore"]
+    assert rows[0][1:3] == ("2", "0.1 s")
+    assert {name: len(places) for name, places in told["places"].items()} == {
+        row[0]: int(row[1]) for row in rows if row[0] != "by hand"
+    }
+    scene.answer({"do": "undo"})
+    assert scene.sent[-2][0]["automatic"] is None
 
 
 def test_an_outline_is_drawn_as_it_was_seen():

@@ -23,7 +23,12 @@ The rooms, each of which imports only those before it:
 ``arcs.py``      lesson 05: the circles that five ways see in an arc
 ``naming.py``    lesson 06: candidates, what each costs, the chosen one
 ``scoring.py``   lesson 07: tolerance, weights, one-sided or two-sided
+``keys.py``      what the keys that drive the robot mean for its wheels
+``finder.py``    looks for shapes beside the drive
+``moving.py``    a shape that is moved meanwhile
+``runs.py``      by hand, from way-points, explored: what came of it
 ``driving.py``   the robot under somebody's hand, and what it knows so far
+``sketch.py``    what the page needs to know to draw it
 ``scene.py``     ``drive_scene``: drive it with the keys, and watch its map grow
 ===============  ==================================================
 """

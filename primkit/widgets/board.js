@@ -1,4 +1,4 @@
-// The board in the page: draws what the robot knows.
+// The board in the page: draws what the robot knows. Cells come as an array, or as a map's values.
 
 const FAR = 1e-4; // m: lengths come in tenths of a millimetre
 const SMALL = 400; // px: in narrower pictures shapes have their kind written on them, and not their sizes
@@ -91,9 +91,13 @@ class Picture {
   }
 
   places(automatic, { colors }) {
-    for (const [x, y] of this.tenths(automatic?.places ?? [])) {
-      this.line([[x - 0.008, y], [x + 0.008, y]], colors.grey, 1);
-      this.line([[x, y - 0.008], [x, y + 0.008]], colors.grey, 1);
+    const { "way-points": points = [], explore = [] } = automatic?.places ?? {}, arm = 0.008;
+    for (const [x, y] of this.tenths(points)) {
+      this.line([[x - arm, y], [x + arm, y]], colors.grey, 1);
+      this.line([[x, y - arm], [x, y + arm]], colors.grey, 1);
+    }
+    for (const [x, y] of this.tenths(explore)) {
+      this.line([[x - arm, y], [x, y + arm], [x + arm, y], [x, y - arm], [x - arm, y]], colors.ink, 1.5);
     }
   }
 
@@ -113,7 +117,7 @@ class Picture {
 
   cells({ cells, board }, { colors }) {
     this.pen.fillStyle = colors.ink;
-    for (const [i, j] of cells) {
+    for (const [i, j] of cells.values()) {
       const [x, y] = this.at([(i + 0.5) * board.cell, (j + 0.5) * board.cell]);
       this.pen.fillRect(x - 0.75, y - 0.75, 1.5, 1.5);
     }

@@ -1,9 +1,10 @@
 """Driving: the robot under somebody's hand, and what it knows so far; the scene without its picture.
 
-In:  a ``World``, and which of the four keys are held during each tenth of a second.
+In:  a ``World``, and the speeds of the wheels for each tenth of a second.
 Out: a ``DriveState``: pose, last scan, cells, shapes found so far, score, time.
 
 >>> from primkit.shapes import Circle
+>>> from primkit.widgets.keys import wheels_for
 >>> state = DriveState(World([Circle((0.3, 0.0), 0.05)]))
 >>> step = state.step(wheels_for(["forward"]))
 >>> state.pose.round(4).tolist(), len(step.new_cells)
@@ -12,67 +13,46 @@ Out: a ``DriveState``: pose, last scan, cells, shapes found so far, score, time.
 >>> state.pose.tolist(), state.n_scans
 ([0.0, 0.0, 0.0], 1)
 
-Each step turns the wheels for a period of the sensor, scans once, adds the hits to the grid, and looks for shapes when
-the grid has grown by a hundredth since the last look; what is left over is looked at when the robot stands or sees
-nothing new. What a step takes does not grow with the time: scans are not kept, and the grid is as large as the outlines
-are long. Who wants the scans back writes a journal.
+Each step turns the wheels for a period of the sensor, scans once, adds the hits to the grid, and begins to look for
+shapes when a hundredth of the grid is new since the last look; what is left over is looked at when the robot stands or
+sees nothing new. The look is the business of a ``Finder``: in a script it is done before the step is, in the scene it
+goes on beside the drive, and the shapes are those of the last one that is done. What a step takes does not grow with
+the time: scans are not kept, and the grid is as large as the outlines are long. Who wants the scans back writes a
+journal.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable
+from concurrent.futures import Executor, Future
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arguments import check_type
+from ..changes import MovingGrid
 from ..evaluation import evaluate
 from ..explorer.seen import EXPLAINED, SeenMap
 from ..formats import DriveJournal, record_drive
 from ..grid import Grid
 from ..lidar import Lidar, Scans, scan
 from ..measure import Detection
-from ..pipeline import Memory, find_shapes
-from ..robot import FASTEST, advance, start_pose, teleport_poses
+from ..robot import advance, start_pose
 from ..world import World
+from .finder import AtOnce, Finder
+from .keys import STANDING
+from .moving import with_one_moved
+from .runs import Comparison, Run, by_exploring, from_waypoints
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-TURNING = 0.6  # of the greatest speed: by how much one wheel is faster than the other when turning
-STANDING = (0.0, 0.0)  # rad/s: wheels that stand still
-GROWN = 1.01  # so many times the cells are worth another look for shapes
-HELD = {"forward": (1, 0), "back": (-1, 0), "left": (0, 1), "right": (0, -1)}  # onwards, counter-clockwise
-
-
-def wheels_for(held: Iterable[str]) -> tuple[float, float]:
-    """Return the speeds of the left and the right wheel while some keys are held, radians per second.
-
-    Parameters
-    ----------
-    held : iterable of str
-        Any of ``"forward"``, ``"back"``, ``"left"`` and ``"right"``; opposite ones cancel each other.
-
-    Raises
-    ------
-    ValueError
-        If there is another word among them.
-
-    Examples
-    --------
-    The robot turns equally fast on the spot and on the way:
-
-    >>> [round(speed, 3) for speed in (*wheels_for(["left"]), *wheels_for(["forward", "left"]))]
-    [-1.884, 1.884, 2.512, 6.28]
-    """
-    words = set(held)
-    if not words <= HELD.keys():
-        raise ValueError(f"held must be among {', '.join(HELD)}, got {sorted(words - HELD.keys())[0]!r}")
-    ahead, turn = (sum(HELD[word][i] for word in words) for i in (0, 1))
-    middle = ahead * (1 - abs(turn) * TURNING / 2)  # so that the faster wheel is not too fast
-    return FASTEST * (middle - turn * TURNING / 2), FASTEST * (middle + turn * TURNING / 2)
+NEWS = 0.01  # when this share of the cells has come or gone since the last look, it is time for another
+FAR = 1 << 31  # cells: farther apart than any two on a board
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,24 +63,18 @@ class Step:
     ----------
     new_cells : array of int, shape (M, 2)
         Cells of the grid that were hit for the first time.
+    gone_cells : array of int, shape (K, 2)
+        Cells that were given up: only where things may move.
     stopped : bool
         Whether something was in the robot's way.
     mapped : bool
-        Whether the shapes were looked for anew; else they are what they were.
+        Whether a look for shapes was done; else they are what they were.
     """
 
     new_cells: Ints
+    gone_cells: Ints
     stopped: bool
     mapped: bool
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """What the automatic movement finds on the same board: the number of its scans, of its shapes, its score."""
-
-    n_scans: int
-    n_found: int
-    score: float
 
 
 class DriveState:
@@ -116,8 +90,12 @@ class DriveState:
         A file ending in ``.jsonl`` that each scan is written to as it happens; ``load_drive`` reads it. It is made
         with the first step. No file is ever replaced: where there is one already, and after ``undo``, the next
         free of ``drive.jsonl``, ``drive-2.jsonl``, ... is taken.
+    moving : bool
+        Whether things may be moved meanwhile: the map is then a ``MovingGrid``, which gives up what is contradicted.
     rng : int
-        Seed for the sensor's noise and for the search.
+        Seed for the sensor's noise, for the search, and for what is moved where.
+    executor : Executor, optional
+        Who looks for shapes: ``AtOnce()`` by default, ``beside()`` in a thread of its own.
 
     Raises
     ------
@@ -126,29 +104,41 @@ class DriveState:
     """
 
     def __init__(
-        self, world: World, lidar: Lidar | None = None, *, journal: str | Path | None = None, rng: int = 0
+        self,
+        world: World,
+        lidar: Lidar | None = None,
+        *,
+        journal: str | Path | None = None,
+        moving: bool = False,
+        rng: int = 0,
+        executor: Executor | None = None,
     ) -> None:
         check_type(world, World, "world must be a World, as in drive_scene(world)")
-        self.world, self.lidar, self.seed = world, Lidar() if lidar is None else lidar, rng
+        self.lidar, self.seed, self.moving = Lidar() if lidar is None else lidar, rng, moving
         check_type(self.lidar, Lidar, "lidar must be a Lidar, such as Lidar()")
+        check_type(moving, bool, "moving must be True or False")
         check_type(rng, int, "rng must be a seed, a whole number")
         self.journal = None if journal is None else Path(journal)
         if self.journal is not None and self.journal.suffix != ".jsonl":
             raise ValueError(f"journal must be a file name that ends in .jsonl, got {self.journal.name}")
+        self._start_world = world
         self._written: DriveJournal | None = None
+        self._finder = Finder(AtOnce() if executor is None else executor, rng)
         self.undo()
+        self.finish()
 
     def undo(self) -> None:
         """Go back to the start and forget all that was seen; what was written to a journal stays."""
-        self.close()
+        self._end_journal()
+        self._finder.forget()
         self.trouble = ""  # why the journal could not be written, in one sentence
-        self.pose, self.n_scans, self.stopped = start_pose(self.world), 0, False
-        self.grid, self.found = Grid(), list[Detection]()
+        self.world, self.pose, self.n_scans, self.stopped = self._start_world, start_pose(self._start_world), 0, False
+        self.grid: Grid = MovingGrid(lidar=self.lidar) if self.moving else Grid()
+        self.found = list[Detection]()
+        self.n_scans_found = 0  # how many scans the shapes were found in
         self.seen_map = SeenMap(self.world.size)
-        self._rng = np.random.default_rng(self.seed)
-        self._memory: Memory = {}
-        self._cells: set[tuple[int, int]] = set()
-        self._n_mapped = 0  # cells that the shapes were found among
+        self._rng, self._hand = np.random.default_rng(self.seed), np.random.default_rng([self.seed, 1])
+        self._n_news = 0  # cells that have come or gone since the last look began
         self._rests = True  # stands, or sees nothing new
         self._look()
         self.map()
@@ -159,7 +149,7 @@ class DriveState:
         Parameters
         ----------
         wheels : array_like, shape (2,)
-            Speeds of the left and the right wheel, radians per second; see ``wheels_for``.
+            Speeds of the left and the right wheel, radians per second, as ``wheels_for`` gives them.
 
         Returns
         -------
@@ -171,37 +161,101 @@ class DriveState:
         ValueError
             If the wheels are too fast; all then stays as it was.
         """
-        new = self.move(wheels)
-        return Step(new, self.stopped, self.map())
+        new, gone = self.move(wheels)
+        return Step(new, gone, self.stopped, self.map())
 
-    def move(self, wheels: ArrayLike = STANDING) -> Ints:
-        """Turn the wheels for a period and scan; return the cells that are new, shape (M, 2)."""
+    def move(self, wheels: ArrayLike = STANDING) -> tuple[Ints, Ints]:
+        """Turn the wheels for a period and scan; return the cells that are new and that are gone, shapes (M, 2)."""
         self.pose, self.stopped = advance(self.world, self.pose, wheels, self.lidar.period)
         before = self.scan
-        new = self._look()
+        new, gone = self._look()
         self._rests = len(new) == 0 or not np.any(wheels)
         self._write(before, wheels)
-        return new
+        return new, gone
 
     def map(self) -> bool:
-        """Look for shapes, if there is enough to look at; tell whether that was so."""
-        n, before = len(self.grid), self._n_mapped
-        if n == before or (n < GROWN * before and not self._rests):
-            return False
-        self.found = find_shapes(self.grid.points(), memory=self._memory, rng=self.seed)
-        self._n_mapped = n
-        return True
+        """Fetch the shapes of a look that is done, and begin another when it is time; tell whether one was done.
 
-    def _look(self) -> Ints:
-        """Scan from where the robot is, and return the cells that are new, shape (M, 2)."""
+        Raises
+        ------
+        Exception
+            Whatever ended the look, if it could not be finished.
+        """
+        done = self._fetch()
+        enough = 0 < self._n_news >= (0 if self._rests else NEWS * len(self.grid))
+        if enough and not self._finder.busy:
+            self._begin_look()
+            done = self._fetch() or done
+        return done
+
+    def _begin_look(self) -> None:
+        self._n_news = 0
+        self._finder.look(self.grid.points(), self.n_scans)
+
+    def _fetch(self, wait: bool = False) -> bool:
+        news = self._finder.news(wait=wait)
+        if news is not None:
+            self.found, self.n_scans_found = news.found, news.n_scans
+        return news is not None
+
+    def finish(self) -> None:
+        """Look at all that was seen, afresh, and wait for it: ``found`` is then what ``find_shapes`` makes of the map.
+
+        Raises
+        ------
+        Exception
+            Whatever ended the look, if it could not be finished.
+        """
+        self._finder.forget()
+        self._begin_look()
+        self._fetch(wait=True)
+
+    @property
+    def looks(self) -> bool:
+        """Whether a look is under way, or due as soon as the robot rests."""
+        return self._finder.busy or (self._rests and self._n_news > 0)
+
+    def _look(self) -> tuple[Ints, Ints]:
+        """Scan from where the robot is, and return the cells that are new, and that are gone, shapes (M, 2)."""
         self.scan: Scans = scan(self.world, self.pose, self.lidar, rng=self._rng)
         self.n_scans += 1
         self.seen_map.add(self.scan, self.lidar.range_min, self.lidar.range_max)
-        hit = {(i, j) for i, j in self.grid.to_cells(self.scan.points()).tolist()} - self._cells
-        if hit:
-            self._cells |= hit
-            self.grid.add(self.scan)
-        return np.array(sorted(hit), dtype=np.int64).reshape(-1, 2)
+        before = self.grid.cells
+        self.grid.add(self.scan)
+        now = self.grid.cells
+        new, gone = _only_in(now, before), _only_in(before, now)
+        self._n_news += len(new) + len(gone)
+        return new, gone
+
+    def move_something(self) -> bool:
+        """Move one shape to another place, unseen by the robot; tell whether there was room for that.
+
+        Raises
+        ------
+        ValueError
+            If the map is one of things that stand still.
+        """
+        after = with_one_moved(self.world, self.pose, self._hand)
+        if after is not None:
+            self.rearrange(after)
+        return after is not None
+
+    def rearrange(self, world: World) -> None:
+        """Put things where they are in another world, of the same size; the robot stays where it is.
+
+        Raises
+        ------
+        ValueError
+            If the map is one of things that stand still, the board is of another size, or the robot would stand in a
+            shape.
+        """
+        if not self.moving:
+            raise ValueError("things must be allowed to move, as in drive_scene(world, moving=True)")
+        check_type(world, World, "world must be a World")
+        if world.size != self.world.size:
+            raise ValueError(f"the board must stay {self.world.size:g} m wide, got {world.size:g} m")
+        advance(world, self.pose, STANDING, 0)  # refuses a place in a shape
+        self.world = world
 
     @property
     def time(self) -> float:
@@ -218,13 +272,22 @@ class DriveState:
         explained = self.seen_map.covered([one.shape for one in self.found], EXPLAINED)
         return self.seen_map.hiding_places(explained)
 
-    def automatic(self) -> Comparison:
-        """Scan the same board from the paper's way-points, with the same sensor, and return what comes out."""
-        scans = scan(self.world, teleport_poses(self.world), self.lidar, rng=self.seed)
-        grid = Grid()
-        grid.add(scans)
-        found = find_shapes(grid.points(), rng=self.seed)
-        return Comparison(len(scans), len(found), evaluate(found, self.world).weighted_accuracy)
+    def compare(self) -> Comparison:
+        """Return this drive beside the way-points and ``explore`` on the same board with the same sensor.
+
+        The first takes some tenths of a second, the other some seconds.
+        """
+        self.finish()
+        return Comparison((self.by_hand(), *automatic_runs(self.world, self.lidar, self.seed)))
+
+    def by_hand(self) -> Run:
+        """Return what came of this drive so far."""
+        name, note = "by hand", "it scans while it drives"
+        return Run(name, self.n_scans, self.time, len(self.found), self.score, note, self.pose[None, :2])
+
+    def beside(self, work: Callable[[], T]) -> Future[T]:
+        """Have other work done where shapes are looked for, between two looks."""
+        return self._finder.submit(work)
 
     def _write(self, before: Scans, wheels: ArrayLike) -> None:
         """Write the last scan to the journal, and the one before any step when there is none yet."""
@@ -237,7 +300,7 @@ class DriveState:
             self._written.add(self.scan, wheels)
         except (OSError, ValueError) as error:  # a full disk ends the record, not the drive
             self.trouble = str(error)
-            self.close()
+            self._end_journal()
 
     @property
     def record(self) -> Path | None:
@@ -245,10 +308,26 @@ class DriveState:
         return None if self._written is None else self._written.path
 
     def close(self) -> None:
+        """Close the journal, if one is open, and let go of who looks for shapes."""
+        self._end_journal()
+        self._finder.close()
+
+    def _end_journal(self) -> None:
         """Close the journal, if one is open; the next step after this begins another."""
         if self._written is not None:
             self._written.close()
         self._written = None
+
+
+def automatic_runs(world: World, lidar: Lidar, rng: int) -> tuple[Run, Run]:
+    """Return what the two automatic movements find on a board."""
+    return from_waypoints(world, lidar, rng), by_exploring(world, lidar, rng)
+
+
+def _only_in(cells: Ints, others: Ints) -> Ints:
+    """Return the cells that are not among the others, shape (M, 2); in both no cell stands twice."""
+    one, other = (each[:, 0] * FAR + each[:, 1] for each in (cells, others))
+    return cells[np.isin(one, other, assume_unique=True, invert=True)]
 
 
 def _opened(path: Path, lidar: Lidar) -> DriveJournal:

@@ -1,28 +1,17 @@
-// The scene in the page: takes keys and buttons, has the clock, and hears what the kernel sends. The kernel puts
-// board.js in front of it: widgets come as one module.
+// The scene in the page: what it shows, and what it hears. The kernel puts board.js and hand.js in front of it: widgets
+// come as one module.
 
-const KEYS = {
-  KeyW: "forward", ArrowUp: "forward",
-  KeyS: "back", ArrowDown: "back",
-  KeyA: "left", ArrowLeft: "left",
-  KeyD: "right", ArrowRight: "right",
-};
-const PAD = [["forward", "▲"], ["left", "◀"], ["back", "▼"], ["right", "▶"]];
 const OTHERS = [
   ["pause", "Pause", true],
   ["undo", "Back to the start", false],
   ["unseen", "What have I not seen yet?", true],
   ["truth", "Show the truth", true],
+  ["move", "Move something", false],
   ["automatic", "Compare: automatic", false],
 ];
-const PERIOD = 100; // ms: a step takes a tenth of a second
-const SOON = 90; // ms: timers are not exact
-const LATE = 5000; // ms: an answer that has not come by then will not come; the kernel may have been restarted
-const AWAY = "Click here, then drive with W A S D or the arrow keys, two at once.";
-const HERE = "You drive: W A S D or the arrow keys. A click elsewhere or Tab stops.";
 const LEGEND = [
   "Blue lines: beams. Dots: cells that were hit. Solid outline: seen. Dashed: only supposed.",
-  "Hatched: not seen yet. Grey: the truth. +: way-points of the automatic movement.",
+  "Hatched: not seen yet. Grey: the truth. Scans of the robot alone: + at way-points, \u25c7 exploring.",
 ].join(" ");
 
 const made = (parent, tag, className, attributes = {}, words = "") => {
@@ -55,129 +44,33 @@ function build(el) {
     const pressed = toggles ? { "aria-pressed": "false" } : {};
     return made(others, "button", word, { "type": "button", ...pressed }, label);
   });
-  parts.automatic = made(root, "p", "automatic", { "role": "status", "aria-live": "polite" });
+  parts.automatic = made(root, "div", "automatic", { "role": "status", "aria-live": "polite" });
   parts.record = made(root, "p", "record");
   made(root, "p", "legend", {}, LEGEND);
   return parts;
 }
 
-// The clock: while something is held it asks for a step every tenth of a second, and once more when all is let go;
-// never for a second one before the first is answered. The shortest tap is a step.
+// The runs beside each other: by hand, from way-points, explored.
 
-class Clock {
-  constructor(ask) {
-    this.ask = ask;
-    this.held = new Map(); // what holds it (a key, a pointer): the word
-    this.tapped = new Set(); // words that were held at some time since the last step
-    this.asked = -Infinity;
-    this.waits = this.moves = false;
-  }
-
-  hold(holder, word) {
-    if (this.held.get(holder) === word) return; // a key that repeats itself
-    this.held.set(holder, word);
-    this.tapped.add(word);
-    this.timer ??= setInterval(() => this.tick(), PERIOD);
-    this.tick(); // the first step at once
-  }
-
-  release(holder) {
-    this.held.delete(holder);
-  }
-
-  stop() {
-    this.held.clear();
-    this.tapped.clear();
-  }
-
-  tick() {
-    const since = performance.now() - this.asked;
-    if (since < SOON || (this.waits && since < LATE)) return;
-    if (!this.tapped.size && !this.held.size && !this.moves) {
-      clearInterval(this.timer);
-      this.timer = undefined;
-      return;
-    }
-    const words = new Set([...this.tapped, ...this.held.values()]);
-    this.tapped.clear();
-    this.moves = words.size > 0;
-    this.waits = true;
-    this.asked = performance.now();
-    this.ask({ do: "step", held: [...words] });
-  }
-
-  answered() {
-    this.waits = false;
-  }
-}
-
-// The keys and the buttons.
-
-function listen(parts, clock, ask) {
-  const { root } = parts;
-  const shown = () => {
-    const here = root.contains(document.activeElement) && document.hasFocus();
-    root.classList.toggle("driving", here);
-    parts.focus.textContent = here ? HERE : AWAY;
-    const held = new Set(clock.held.values());
-    parts.pad.forEach((button, i) => button.classList.toggle("held", held.has(PAD[i][0])));
-  };
-  const leave = () => {
-    clock.stop();
-    shown();
-  };
-
-  root.addEventListener("keydown", (event) => {
-    if (event.key === "Tab") return;
-    event.stopPropagation(); // no key in here is the notebook's
-    if (event.ctrlKey || event.altKey || event.metaKey || !(event.code in KEYS)) return;
-    event.preventDefault(); // arrow keys would scroll the page
-    clock.hold(event.code, KEYS[event.code]);
-    shown();
+function tabled(place, rows) {
+  place.textContent = "";
+  if (!rows) return;
+  const table = made(place, "table", "");
+  rows.forEach((row, number) => {
+    const line = made(table, "tr", "");
+    row.slice(0, -1).forEach((text, i) => made(line, number === 0 || i === 0 ? "th" : "td", "", {}, text));
+    if (row.at(-1)) line.title = row.at(-1);
   });
-  root.addEventListener("keyup", (event) => {
-    clock.release(event.code);
-    shown();
-  });
-  root.addEventListener("focusin", shown);
-  root.addEventListener("focusout", (event) => root.contains(event.relatedTarget) || leave());
-  root.addEventListener("pointerdown", (event) => {
-    if (event.target.tagName !== "BUTTON") root.focus({ preventScroll: true });
-  });
-
-  parts.pad.forEach((button, i) => {
-    const [word] = PAD[i];
-    const release = (event) => {
-      clock.release(`pointer ${event.pointerId}`);
-      shown();
-    };
-    button.addEventListener("pointerdown", (event) => {
-      button.setPointerCapture(event.pointerId); // so that the release is seen wherever it happens
-      root.focus({ preventScroll: true });
-      event.preventDefault();
-      clock.hold(`pointer ${event.pointerId}`, word);
-      shown();
-    });
-    ["pointerup", "pointercancel", "lostpointercapture"].forEach((kind) => button.addEventListener(kind, release));
-    button.addEventListener("contextmenu", (event) => event.preventDefault()); // a long touch holds, nothing else
-    button.addEventListener("click", (event) => {
-      if (event.detail > 0) return; // the pointer has held it already
-      clock.hold("button", word); // Enter or Space: one step
-      clock.release("button");
-    });
-  });
-  parts.others.forEach((button, i) => button.addEventListener("click", () => ask({ do: OTHERS[i][0] })));
-
-  window.addEventListener("blur", leave);
-  return () => window.removeEventListener("blur", leave);
+  rows.filter((row) => row.at(-1)).forEach((row) => made(place, "p", "", {}, `${row[0]}: ${row.at(-1)}.`));
 }
 
 // What the page knows.
 
 function learn(known, message, buffers) {
-  const { cells = [], board, unseen, say, done, ...rest } = message;
-  if (board) Object.assign(known, { board, cells: [], way: [] });
-  known.cells.push(...cells);
+  const { cells = [], gone = [], board, unseen, say, done, busy, ...rest } = message;
+  if (board) Object.assign(known, { board, cells: new Map(), way: [] });
+  gone.forEach((cell) => known.cells.delete(cell.join()));
+  cells.forEach((cell) => known.cells.set(cell.join(), cell));
   Object.assign(known, rest);
   if (unseen !== undefined) known.unseen = unseen ? squares(unseen, buffers[0]) : [];
   if (message.pose) {
@@ -199,22 +92,23 @@ function squares(n, bits) {
 
 function render({ model, el }) {
   const parts = build(el);
-  const known = { cells: [], way: [], shapes: [] };
+  const known = { cells: new Map(), way: [], shapes: [] };
   const picture = new Picture(parts.canvas);
   const ask = (message) => model.send(message);
   const clock = new Clock(ask);
   const forget = listen(parts, clock, ask);
   const toggled = { pause: () => known.paused, truth: () => known.truthful, unseen: () => Boolean(known.unseen?.all) };
 
-  let due = 0;
+  let due = 0, tabled_;
   const show = () => {
     due = 0;
     picture.draw(known);
     parts.score.textContent = known.score ?? "";
     parts.record.textContent = known.record ?? "";
-    parts.automatic.textContent = known.automatic?.words ?? "";
+    if (known.automatic !== tabled_) tabled(parts.automatic, (tabled_ = known.automatic)?.table);
     parts.others.forEach((button, i) => {
       const state = toggled[OTHERS[i][0]];
+      if (OTHERS[i][0] === "move") button.hidden = !known.moving;
       if (state) button.setAttribute("aria-pressed", String(Boolean(state())));
     });
     const names = known.shapes.map(({ name }) => name).join("; ") || "no shape found yet";
@@ -225,7 +119,7 @@ function render({ model, el }) {
   const soon = () => (due ||= requestAnimationFrame(show));
 
   const hear = (message, buffers) => {
-    if (message.done) clock.answered();
+    clock.hear(message);
     learn(known, message, buffers);
     if (message.say) parts.says.textContent = message.say;
     soon();
@@ -237,7 +131,7 @@ function render({ model, el }) {
 
   return () => {
     clock.stop();
-    clearInterval(clock.timer);
+    clock.end();
     model.off("msg:custom", hear);
     sized.disconnect();
     cancelAnimationFrame(due);

@@ -11,41 +11,41 @@ Scene: 0.0 s driven, 1 scan, 0 shapes found
 
 The page (``scene.js``, ``board.js``) has the clock: while a key is held it asks for a step ten times a second, one at a
 time, and the kernel answers each with what is new. So nothing runs on when nobody drives, and a slow computer drives
-slowly instead of lagging behind. Without noise a look for shapes takes some hundredths of a second; with much of it,
-2 mm say, it takes longer than a step, and the robot waits for it. Nothing is drawn that the robot has not measured,
-unless the truth is switched on; the score knows the truth, too.
+slowly instead of lagging behind. Shapes are looked for beside that, in a thread: with much noise a look takes longer
+than a step, and then the outlines are some scans old, which the page says. When all keys are let go, it asks on until
+the last look is done. Nothing is drawn that the robot has not measured, unless the truth is switched on; the score knows
+the truth, too.
 """
 
 from __future__ import annotations
 
+from concurrent.futures import Executor, Future
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 import anywidget
 import numpy as np
-from numpy.typing import NDArray
 
-from ..evidence import GAP
-from ..explorer.seen import OUTLINE_STEP
 from ..lidar import Lidar
-from ..measure import Detection
-from ..plots.look import GREY, INK, KIND_COLORS, KIND_INKS, ORANGE, PALE, SKY
-from ..robot import BODY, teleport_poses
-from ..shapes import Circle, Shape
 from ..world import World
-from .driving import DriveState, wheels_for
+from .driving import DriveState, automatic_runs
+from .finder import beside
+from .keys import wheels_for
+from .runs import Comparison
+from .sketch import Message, board_and_look, drawn, page, ring_of, tenths, told_ranges
 
-Floats = NDArray[np.float64]
-Message = dict[str, Any]
-
-BOARD, PAGE, STYLE = (
-    Path(__file__).with_name(name).read_text(encoding="utf-8") for name in ("board.js", "scene.js", "scene.css")
-)
-COLORS = {"ink": INK, "grey": GREY, "pale": PALE, "beam": SKY, "hit": ORANGE}
-FAR = 1e-4  # m: lengths go to the page in tenths of a millimetre
+OLD = 5  # scans: outlines that know all scans but so many are as good as new
 
 
-def drive_scene(world: World, lidar: Lidar | None = None, *, journal: str | Path | None = None, rng: int = 0) -> Scene:
+def drive_scene(
+    world: World,
+    lidar: Lidar | None = None,
+    *,
+    journal: str | Path | None = None,
+    moving: bool = False,
+    rng: int = 0,
+    executor: Executor | None = None,
+) -> Scene:
     """Show a board on which the robot is driven by hand: W A S D, the arrow keys, or the buttons.
 
     Parameters
@@ -57,14 +57,18 @@ def drive_scene(world: World, lidar: Lidar | None = None, *, journal: str | Path
     journal : str or path, optional
         A file ending in ``.jsonl`` that each scan is written to as it happens; ``load_drive`` reads it. A file that
         is there already stays as it is: the next free of ``drive.jsonl``, ``drive-2.jsonl``, ... is taken.
+    moving : bool
+        Whether things may be moved meanwhile, by a button more; the map then gives up what later scans contradict.
     rng : int
-        Seed for the sensor's noise and for the search.
+        Seed for the sensor's noise, for the search, and for what is moved where.
+    executor : Executor, optional
+        Who looks for shapes while the robot drives; a thread of its own by default.
 
     Returns
     -------
     Scene
         A widget, shown when it is the last value of a cell. Its ``state`` has all that the robot knows: ``pose``,
-        ``grid``, ``found``, ``score``, ``time``.
+        ``grid``, ``found``, ``score``, ``time``; ``state.finish()`` waits until the shapes are up to date.
 
     Raises
     ------
@@ -78,7 +82,8 @@ def drive_scene(world: World, lidar: Lidar | None = None, *, journal: str | Path
         ...
     ValueError: journal must be a file name that ends in .jsonl, got drive.txt
     """
-    return Scene(DriveState(world, lidar, journal=journal, rng=rng))
+    executor = beside() if executor is None else executor
+    return Scene(DriveState(world, lidar, journal=journal, moving=moving, rng=rng, executor=executor))
 
 
 class Scene(anywidget.AnyWidget):
@@ -90,14 +95,15 @@ class Scene(anywidget.AnyWidget):
         The robot and what it knows.
     """
 
-    _esm = f"{BOARD}\n{PAGE}"
-    _css = STYLE
+    _esm = page("board.js", "hand.js", "scene.js")
+    _css = page("scene.css")
 
     def __init__(self, state: DriveState) -> None:
         super().__init__()
         self.state = state
         self.paused = self.shows_unseen = self.shows_truth = False
         self._shown: list[Message] = []  # the shapes as the page has them
+        self._automatic: Future[Comparison] | None = None  # under way, or done
         self._compared: Message | None = None
         self.on_msg(lambda _, asked, __: self.answer(asked))
 
@@ -112,8 +118,9 @@ class Scene(anywidget.AnyWidget):
         Parameters
         ----------
         asked : dict
-            ``{"do": "step", "held": ["forward", "left"]}``; or ``do`` is ``"hello"`` (a page that has just been
-            opened, and needs all), ``"undo"``, ``"pause"``, ``"unseen"``, ``"truth"`` or ``"automatic"``.
+            ``{"do": "step", "held": ["forward", "left"]}``; or ``do`` is ``"news"`` (of what goes on beside the
+            drive), ``"hello"`` (a page that has just been opened, and needs all), ``"undo"``, ``"pause"``,
+            ``"unseen"``, ``"truth"``, ``"move"`` or ``"automatic"``.
         """
         match asked:
             case {"do": "step", "held": list(held)}:
@@ -121,11 +128,13 @@ class Scene(anywidget.AnyWidget):
                     self._send_step(held)
                 else:
                     self.send({"say": "Paused: the robot stands still until you go on.", "done": True})
+            case {"do": "news"}:
+                self.send(self._news() | {"done": True})
             case {"do": "hello"}:
                 self._send_all()
             case {"do": "undo"}:
                 self.state.undo()
-                self._compared = None
+                self._automatic = self._compared = None
                 self._send_all("Back at the start: all is forgotten.")
             case {"do": "pause"}:
                 self.paused = not self.paused
@@ -136,52 +145,66 @@ class Scene(anywidget.AnyWidget):
             case {"do": "truth"}:
                 self.shows_truth = not self.shows_truth
                 self.send(self._truth())
+            case {"do": "move"}:
+                self._move_something()
             case {"do": "automatic"}:
-                self._send_comparison()
+                self._compare()
 
     def _send_step(self, held: list[str]) -> None:
-        """Make a step; the page gets the picture before shapes are looked for, and the shapes when they are there."""
+        """Make a step; the page gets the picture before anything is said of shapes."""
         state = self.state
-        new = state.move(wheels_for(held))
-        message = self._now() | {"cells": new.tolist()}
+        new, gone = state.move(wheels_for(held))
+        message = self._now() | {"cells": new.tolist(), "gone": gone.tolist()}
         if state.stopped:
             message["say"] = "Something is in the way: the robot only turns."
         self.send(message)
-        self.send(self._mapped() | {"done": True})
+        self.send(self._news() | {"done": True})
         if self.shows_unseen:
             self._send_unseen()
 
+    def _news(self) -> Message:
+        """Return what has come of the work beside the drive, and whether there is more to come."""
+        return self._mapped() | self._comparison() | {"busy": self._busy}
+
+    @property
+    def _busy(self) -> bool:
+        """Whether there is more to come, even if nobody drives."""
+        return self.state.looks or (self._automatic is not None and self._compared is None)
+
     def _mapped(self) -> Message:
-        """Look for shapes, if it is time to; return what is new about them."""
-        if not self.state.map():
+        """Fetch shapes, begin to look for them if it is time to; return what is new about them."""
+        try:
+            done = self.state.map()
+        except Exception as error:  # whatever it is: who drives must hear of it, and can drive on
+            return {"say": f"The look for shapes failed, the drive goes on: {type(error).__name__}: {error}"}
+        if not done:
             return {}
         before, self._shown = self._shown, [drawn(one) for one in self.state.found]
         if self._shown == before:
-            return {}
-        return {"shapes": self._shown, "score": self._score(), "say": _news(before, self._shown)}
+            return {"score": self._score()}
+        return {"shapes": self._shown, "score": self._score(), "say": _news_of(before, self._shown)}
 
     def _score(self) -> str:
         state = self.state
         driven = f"{state.time:.1f} s · {state.n_scans:,} scan{'s' * (state.n_scans != 1)}"
-        return f"{driven} · {len(state.found)} found · score {state.score:.2f}"
+        age = state.n_scans - state.n_scans_found
+        old = f" · shapes {age} scans old" if age > OLD and state.looks else ""
+        return f"{driven} · {len(state.found)} found · score {state.score:.2f}{old}"
 
     def _now(self) -> Message:
         """Return what every step changes: pose, ranges, time, score."""
         state = self.state
-        ranges = [round(r / FAR) if np.isfinite(r) else -1 for r in state.scan.ranges[0].tolist()]
         record = state.trouble or (f"recording {state.record.name}" if state.record else "")
-        pose = [round(float(value), 5) for value in state.pose]
+        pose, ranges = [round(float(value), 5) for value in state.pose], told_ranges(state.scan.ranges[0])
         return {"pose": pose, "ranges": ranges, "scans": state.n_scans, "score": self._score(), "record": record}
 
     def _send_all(self, say: str = "") -> None:
         """Send all that there is: to a page that knows nothing, or shall forget what it knows."""
         state = self.state
         self._shown = [drawn(one) for one in state.found]
-        board = {"size": state.world.size, "body": BODY, "reach": state.lidar.range_max, "cell": state.grid.resolution}
-        look = {"colors": COLORS, "kinds": KIND_COLORS, "inks": KIND_INKS}
-        all_ = {"board": board, "look": look, "cells": state.grid.cells.tolist(), "shapes": self._shown}
-        compared = {"automatic": self._compared}
-        self.send(self._now() | all_ | self._truth() | compared | {"paused": self.paused, "say": say})
+        same = board_and_look(state.world.size, state.lidar, state.grid.resolution) | {"moving": state.moving}
+        all_ = {"cells": state.grid.cells.tolist(), "shapes": self._shown, "automatic": self._compared}
+        self.send(self._now() | same | all_ | self._truth() | {"paused": self.paused, "say": say, "busy": self._busy})
         self._send_unseen()
 
     def _send_unseen(self) -> None:
@@ -194,85 +217,45 @@ class Scene(anywidget.AnyWidget):
 
     def _truth(self) -> Message:
         shown = self.state.world.shapes if self.shows_truth else ()
-        return {"truth": [_tenths(_ring(shape)) for shape in shown], "truthful": self.shows_truth}
+        return {"truth": [tenths(ring_of(shape)) for shape in shown], "truthful": self.shows_truth}
 
-    def _send_comparison(self) -> None:
-        """Send what the paper's way-points find on this board, and where they are."""
-        if self._compared is None:
-            run = self.state.automatic()
-            found = f"{run.n_found} shape{'s' * (run.n_found != 1)}"
-            words = f"Automatic: {run.n_scans} way-points, {found} found, score {run.score:.2f}"
-            self._compared = {"words": words, "places": _tenths(teleport_poses(self.state.world)[:, :2])}
-        self.send({"automatic": self._compared})
+    def _move_something(self) -> None:
+        """Move a shape; what the robot has seen of it stays until it looks again."""
+        moved = self.state.move_something()
+        self._automatic = self._compared = None  # that was another board
+        say = "Somebody has moved a shape. Go and look." if moved else "There is no room to move anything."
+        self.send(self._truth() | {"say": say, "automatic": None, "score": self._score()})
+
+    def _compare(self) -> None:
+        """Begin to drive by itself on this board, beside the drive by hand; or say again what came of it."""
+        state = self.state
+        if self._automatic is None:
+            work = partial(automatic_runs, state.world, state.lidar, state.seed)
+            self._automatic = state.beside(lambda: Comparison(work()))
+            self.send({"say": "The robot drives by itself now: way-points, then explore."})
+        self.send(self._news())
+
+    def _comparison(self) -> Message:
+        """Return the runs beside each other, once the automatic ones are done."""
+        if self._automatic is None or not self._automatic.done():
+            return {}
+        try:
+            automatic = self._automatic.result().runs
+        except Exception as error:
+            self._automatic = None
+            return {"say": f"The robot cannot drive by itself here: {type(error).__name__}: {error}"}
+        places = {run.name: tenths(run.way) for run in automatic}
+        runs = Comparison((self.state.by_hand(), *automatic))
+        self._compared = {"table": runs.texts(), "places": places}
+        return {"automatic": self._compared}
 
     def close(self) -> None:
-        """Take the scene from the page, and close the journal."""
+        """Take the scene from the page, close the journal, and end the work beside the drive."""
         self.state.close()
         super().close()
 
 
-def drawn(one: Detection) -> Message:
-    """Return how a shape is drawn: its outline in stretches that were seen, or are only supposed, and its name.
-
-    Examples
-    --------
-    Half of a circle was seen; the last stretch closes on the first:
-
-    >>> circle = Circle((0, 0), 0.1)
-    >>> told = drawn(Detection(circle, circle.outline(200)[:101], 0.0, dimension_std=(0.001,)))
-    >>> told["name"], [seen for seen, _ in told["stretches"]]
-    ('circle, radius 100 mm', [True, False, True])
-    """
-    ring = _ring(one.shape)
-    seen = _seen(ring, one.points)
-    stretches, start = [], 0
-    for end in range(1, len(ring)):
-        if end == len(ring) - 1 or seen[end] != seen[start]:
-            stretches.append([bool(seen[start]), _tenths(ring[start : end + 1])])
-            start = end
-    (place,) = _tenths(one.shape.centroid[None])
-    return {"kind": one.kind, "name": _name(one), "place": place, "stretches": stretches}
-
-
-def _ring(shape: Shape) -> Floats:
-    """Return points along the outline, the corners among them, the first one again as the last, shape (N, 2)."""
-    if isinstance(shape, Circle):
-        ring = shape.outline(max(24, int(shape.perimeter / OUTLINE_STEP)))
-    else:
-        ring = np.vstack(
-            [
-                corner + np.linspace(0, 1, max(2, int(side / OUTLINE_STEP)), endpoint=False)[:, None] * edge
-                for corner, edge, side in zip(shape.vertices, shape.edges, shape.sides, strict=True)
-            ]
-        )
-    return np.vstack([ring, ring[:1]])
-
-
-def _seen(places: Floats, points: Floats) -> NDArray[np.bool_]:
-    """Tell which places on an outline have a point of their own near them, shape (N,)."""
-    from scipy.spatial import cKDTree
-
-    near: NDArray[np.bool_] = cKDTree(points).query(places)[0] <= GAP
-    return near
-
-
-def _name(one: Detection) -> str:
-    """Return kind and dimensions in millimetres; a question mark for what was not measured."""
-    lengths = [f"{1000 * d:.0f}" if known else "?" for d, known in zip(one.shape.dimensions, one.measured, strict=True)]
-    if isinstance(one.shape, Circle):
-        return f"circle, radius {lengths[0]} mm"
-    if one.kind == "rectangle":
-        return f"rectangle, {' x '.join(lengths)} mm"
-    return f"{one.kind}, sides {', '.join(lengths)} mm"
-
-
-def _tenths(points: Floats) -> list[list[int]]:
-    """Return points in tenths of a millimetre: short to send, and finer than a screen."""
-    told: list[list[int]] = np.rint(points / FAR).astype(int).tolist()
-    return told
-
-
-def _news(before: list[Message], now: list[Message]) -> str:
+def _news_of(before: list[Message], now: list[Message]) -> str:
     """Say in one sentence what is new about the shapes; nothing when only their measures have changed."""
     if [one["kind"] for one in before] == [one["kind"] for one in now]:
         return ""

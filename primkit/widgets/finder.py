@@ -1,0 +1,133 @@
+"""Finder: looks for shapes beside the drive, so that the robot never waits for them.
+
+In:  the points of the grid, again and again, while the map grows.
+Out: ``Look``: the shapes of the last look that is done, and how many scans it knew.
+
+>>> from primkit.shapes import Circle
+>>> finder = Finder(AtOnce())
+>>> finder.look(Circle((0.1, 0.0), 0.06).outline(150), n_scans=7)
+>>> look = finder.news()
+>>> [one.kind for one in look.found], look.n_scans, finder.news()
+(['circle'], 7, None)
+
+There is one look at a time, and who asks for another while it lasts is not heard: the next look takes the points that
+are newest then. ``beside()`` looks in a thread of its own; ``AtOnce()`` in the caller's, so that the same drive gives
+the same shapes on any computer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any, ParamSpec, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..measure import Detection
+from ..pipeline import Memory, find_shapes
+
+Floats = NDArray[np.float64]
+P, T = ParamSpec("P"), TypeVar("T")
+
+
+class AtOnce(Executor):
+    """An executor that does what it is given before it returns."""
+
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        """Do it, and return what came of it."""
+        done: Future[T] = Future()
+        try:
+            done.set_result(fn(*args, **kwargs))
+        except Exception as error:  # it is for who asks for the result, as with any executor
+            done.set_exception(error)
+        return done
+
+
+def beside() -> Executor:
+    """Return an executor with a thread of its own, in which one thing is done after the other."""
+    return ThreadPoolExecutor(max_workers=1, thread_name_prefix="primkit-finder")
+
+
+@dataclass(frozen=True)
+class Look:
+    """The shapes in what was seen by a scan.
+
+    Parameters
+    ----------
+    found : list of Detection
+        From left to right.
+    n_scans : int
+        How many scans the points were made of.
+    """
+
+    found: list[Detection]
+    n_scans: int
+
+
+class Finder:
+    """Looks for shapes among points that grow, one look at a time.
+
+    Parameters
+    ----------
+    executor : Executor
+        Who does the work: ``AtOnce()``, ``beside()``, or any other of ``concurrent.futures`` within this process.
+    rng : int
+        Seed for the search.
+    """
+
+    def __init__(self, executor: Executor, rng: int = 0) -> None:
+        self._executor, self._seed = executor, rng
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin anew with other points; a look that is still under way is not waited for, and comes to nothing."""
+        self._memory: Memory = {}
+        self._under_way: Future[Look] | None = None
+
+    @property
+    def busy(self) -> bool:
+        """Whether a look is under way, or its shapes have not been fetched yet."""
+        return self._under_way is not None
+
+    def look(self, points: Floats, n_scans: int) -> None:
+        """Begin to look for shapes among points, shape (N, 2), metres; while another look lasts, do nothing."""
+        if self._under_way is None:
+            memory, seed = self._memory, self._seed
+
+            def work() -> Look:
+                return Look(find_shapes(points, memory=memory, rng=seed), n_scans)
+
+            self._under_way = self._executor.submit(work)
+
+    def news(self, *, wait: bool = False) -> Look | None:
+        """Return the look that was begun, once it is done, and once only; None while there is nothing new.
+
+        Parameters
+        ----------
+        wait : bool
+            Wait for it until it is done.
+
+        Raises
+        ------
+        Exception
+            Whatever ended the look, if it could not be finished. The next look is then a fresh one.
+        """
+        look = self._under_way
+        if look is None or not (wait or look.done()):
+            return None
+        self._under_way = None
+        try:
+            return look.result()
+        except Exception:
+            self._memory = {}
+            raise
+
+    def close(self) -> None:
+        """Let the executor go; nothing is begun any more, and nothing is waited for."""
+        self._executor.shutdown(wait=False, cancel_futures=True)
+
+    def submit(self, work: Callable[[], T]) -> Future[Any]:
+        """Have other work done beside the drive, when no look is under way."""
+        return self._executor.submit(work)
