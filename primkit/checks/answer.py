@@ -36,6 +36,7 @@ __all__ = ["Answer", "Case", "Check", "Fault", "Step", "number"]
 Verdict = Literal["not attempted", "wrong", "error", "right"]
 Args = tuple[Any, ...]
 
+CHANGES = "changes its arguments"
 SEED = 20  # the same cases for everybody, on every run
 
 SIGNS: dict[Verdict, str] = {"not attempted": "○", "wrong": "✗", "error": "!", "right": "✓"}
@@ -53,10 +54,13 @@ class Answer:
         In short.
     says : str
         In a sentence or two: what is off, or with which input it broke.
+    fault : str, optional
+        A short name for what is wrong, the same for all who do the same: what an overview of a class counts.
     """
 
     verdict: Verdict
     says: str
+    fault: str | None = None
 
     @property
     def right(self) -> bool:
@@ -96,11 +100,19 @@ class Fault:
         The faulty algorithm: a student's function that returns the same in every case has this fault.
     when : callable, optional
         Looks at all cases instead (a list of ``Case``), and tells whether they show this fault.
+    name : str, optional
+        A few words for the overview of a class, such as ``"corner for centre"``; what it says when not given.
     """
 
     says: str
     like: Callable[..., Any] | None = None
     when: Callable[[list[Case]], bool] | None = None
+    name: str = ""
+
+    @property
+    def called(self) -> str:
+        """Its name, or what it says."""
+        return self.name or self.says
 
 
 @dataclass(frozen=True)
@@ -131,18 +143,21 @@ class Check:
     def __call__(self, mine: Any) -> Answer:
         """Judge a student's function."""
         if not callable(mine):
-            return Answer("error", f"{self.name} must be a function, got {shown(mine)}.")
+            return Answer("error", f"{self.name} must be a function, got {shown(mine)}.", "no function")
         cases: list[Case] = []
         for args in self.cases(np.random.default_rng(SEED)):
             given = copy.deepcopy(args)
             try:
                 got = _quietly(mine, given)
             except Exception as error:  # whatever it is, it is the answer
-                return Answer("error", f"{self._call(args)} raised {type(error).__name__}: {error}")
+                if not cases and isinstance(error, NotImplementedError):  # the stub of a problem set
+                    return Answer("not attempted", f"{self.name} still raises NotImplementedError.")
+                kind = type(error).__name__
+                return Answer("error", f"{self._call(args)} raised {kind}: {error}", f"raises {kind}")
             if not cases and _is_stub(got):
                 return Answer("not attempted", f"{self.name} still returns `...`.")
             if not same(given, args):
-                return Answer("wrong", f"{self._call(args)} changes what it is given: work on a copy.")
+                return Answer("wrong", f"{self._call(args)} changes what it is given: work on a copy.", CHANGES)
             expected = self.reference(*copy.deepcopy(args))
             cases.append(Case(args, got, expected, self.judge(got, expected, args)))
         return self._judged(cases)
@@ -157,10 +172,10 @@ class Check:
         wrong = [case for case in cases if case.off is not None]
         if not wrong:
             return Answer("right", f"{self.name} passes all {len(cases)} cases.")
-        fault = next((fault.says for fault in self.faults if self._has(fault, cases)), None)
+        fault = next((fault for fault in self.faults if self._has(fault, cases)), None)
         first = wrong[0]
         says = f"in {len(wrong)} of {len(cases)} cases. For example {self._call(first.args)}: {first.off}."
-        return Answer("wrong", says if fault is None else f"{says}\n{fault}")
+        return Answer("wrong", says) if fault is None else Answer("wrong", f"{says}\n{fault.says}", fault.called)
 
     def _has(self, fault: Fault, cases: list[Case]) -> bool:
         """Tell whether the results show a fault."""

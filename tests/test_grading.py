@@ -1,0 +1,278 @@
+"""Grading: points part by part, whatever a function does; and a time limit that holds."""
+
+import re
+import signal
+import sys
+import threading
+import time
+from contextlib import suppress
+
+import numpy as np
+import pytest
+
+from primkit.checks import Check, Fault, judges
+from primkit.grading import MIME, OutOfTime, Part, Task, TimeLimit
+
+posix = pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="Windows has no alarm")
+
+
+def lengths(_rng):
+    return [(np.array([3.0, 4.0]),), (np.array([1.0, 0.0]),)]
+
+
+def signed(_rng):
+    return [(np.array([-3.0, 4.0]),)]
+
+
+def length(v):
+    return float(np.hypot(*v))
+
+
+SUM = Fault("Sides do not add up.", like=lambda v: abs(float(v.sum())), name="sum for root")
+TASK = Task(
+    "length",
+    [
+        Part("plain vectors", 2, Check("length", length, lengths, judges.number("m"), (SUM,))),
+        Part("below zero", 1.5, Check("length", length, signed, judges.number("m"))),
+    ],
+)
+
+
+def forever(_v):
+    while True:
+        pass
+
+
+def deaf(_v):
+    while True:
+        try:
+            while True:
+                sum(range(100))
+        except Exception:
+            pass
+
+
+def deaf_to_all(_v):
+    while True:
+        try:
+            while True:
+                sum(range(100))
+        except:  # noqa: E722 - what a student may well write
+            pass
+
+
+def asleep(_v):
+    while True:
+        try:
+            time.sleep(10)
+        except:  # noqa: E722
+            continue
+
+
+def test_right_is_all_points_and_a_stub_none():
+    assert TASK.points == 3.5
+    mark = TASK.mark(length)
+    assert mark == 3.5
+    assert type(mark) is float  # np.float64(3.5) is no number to nbgrader
+
+    def stub(_v):
+        raise NotImplementedError
+
+    for untouched in (stub, lambda _v: ...):
+        marked = TASK.marked(untouched)
+        assert marked.points == 0.0
+        assert {row.answer.verdict for row in marked.rows} == {"not attempted"}
+
+
+def test_each_part_is_all_or_none():
+    assert TASK.mark(lambda v: 0.0 if v[0] < 0 else length(v)) == 2.0
+    assert TASK.mark(lambda v: length(v) if v[0] < 0 else 0.0) == 1.5
+
+
+def test_a_named_fault_is_in_the_data():
+    data = TASK.marked(lambda v: abs(v.sum())).data()
+    assert data["task"] == "length"
+    assert (data["points"], data["of"]) == (0.0, 3.5)
+    plain, below = data["parts"]
+    assert (plain["says"], plain["points"], plain["of"]) == ("plain vectors", 0.0, 2.0)
+    assert (plain["verdict"], plain["fault"]) == ("wrong", "sum for root")
+    assert "got 7 m, expected 5 m" in plain["off"]
+    assert (below["verdict"], below["fault"]) == ("wrong", None)
+
+
+def changes(v):
+    v *= 2
+    return length(v) / 2
+
+
+def ends(_v):
+    sys.exit(3)
+
+
+FAULTS = {
+    "raises": (lambda _v: 1 / 0, "error", "raises ZeroDivisionError", "raised ZeroDivisionError: division by zero"),
+    "changes": (changes, "wrong", "changes its arguments", "work on a copy"),
+    "ends": (ends, "error", "raises SystemExit", "ends Python with SystemExit"),
+    "no function": (0.5, "error", "no function", "must be a function, got 0.5"),
+    "memory": (lambda _v: np.zeros(2**60), "error", "raises", "Unable to allocate|too large|too big"),
+}
+
+
+@pytest.mark.parametrize(("function", "verdict", "fault", "off"), FAULTS.values(), ids=FAULTS)
+def test_whatever_a_function_does_costs_its_points_and_gets_a_sentence(function, verdict, fault, off):
+    for row in TASK.marked(function).rows:
+        assert row.answer.verdict == verdict
+        assert row.answer.fault.startswith(fault)
+        assert re.search(off, row.off), row.off
+        assert row.points == 0.0
+
+
+def test_a_judge_that_breaks_costs_the_part_alone():
+    def judge(got, _expected, _args):
+        return None if got + 1 else "zero"
+
+    broken = Part("numbers", 1, Check("length", length, lengths, judge))
+    task = Task("length", [broken, Part("again", 1, Check("length", length, lengths, judges.number("m")))])
+    mark = task.marked(lambda _v: "five")
+    assert [row.answer.verdict for row in mark.rows] == ["error", "wrong"]
+    assert mark.rows[0].answer.fault == "returns what cannot be judged"
+
+
+def test_a_missing_function_is_not_attempted():
+    mark = TASK.marked("length", {})
+    assert {row.answer.fault for row in mark.rows} == {"no such function"}
+    assert TASK.mark("length", {"length": length}) == 3.5
+
+
+@pytest.mark.parametrize("function", [forever, deaf, deaf_to_all, asleep])
+@pytest.mark.parametrize("thread", [pytest.param("main", marks=posix), "another"])
+def test_an_endless_loop_costs_its_parts_alone(function, thread):
+    if function is asleep and thread == "another":
+        pytest.skip("a call that sleeps cannot be interrupted from another thread")
+    if function is deaf_to_all and thread == "another":
+        pytest.skip("where the alarm is missing, a loop may swallow all of it: then the cell's own limit is the end")
+    marks = []
+
+    def run():
+        start = time.monotonic()
+        marks.append(TASK.marked(lambda v: function(v) if v[0] < 0 else length(v), seconds=0.2))
+        marks.append(time.monotonic() - start)
+
+    if thread == "main":
+        run()
+    else:
+        other = threading.Thread(target=run)
+        other.start()
+        other.join()
+    mark, took = marks
+    assert mark.points == 2.0
+    assert mark.rows[1].answer.fault == "out of time"
+    assert "within 0.2 s: is there a loop that never ends?" in mark.rows[1].off
+    assert took < 2.0
+
+
+def test_two_loops_in_each_other_can_swallow_all():
+    """What the limit cannot do, as its docstring says: such a cell is ended from outside."""
+    beaten = []
+
+    def stubborn():
+        for _ in range(9):
+            try:
+                deaf_to_all(None)
+            except:  # noqa: E722
+                beaten.append(True)
+
+    with suppress(OutOfTime), TimeLimit(0.05):
+        stubborn()
+    assert len(beaten) >= 2
+
+
+@posix
+def test_the_limit_leaves_nothing_behind():
+    before, tracing = signal.getsignal(signal.SIGALRM), sys.gettrace()
+    with pytest.raises(OutOfTime), TimeLimit(0.05):
+        forever(None)
+    assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
+    assert signal.getsignal(signal.SIGALRM) == before
+    assert sys.gettrace() == tracing
+    out = sys.stdout
+    for function in (forever, deaf, deaf_to_all):
+        TASK.marked(function, seconds=0.05)
+        assert sys.stdout is out  # what the check put aside is put back
+
+
+def test_a_quick_block_is_not_stopped_later():
+    for thread in (lambda run: run(), lambda run: threading.Thread(target=run).start()):
+        seen = []
+
+        def run(seen=seen):
+            with TimeLimit(0.05):
+                seen.append("in time")
+            time.sleep(0.2)
+            seen.append("and after")
+
+        thread(run)
+        time.sleep(0.3)
+        assert seen == ["in time", "and after"]
+
+
+def test_an_interruption_by_hand_goes_through():
+    def stopped(_v):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        TASK.mark(stopped)
+
+
+def test_what_a_function_says_stays_out_of_the_cell(capsys):
+    def talks(v):
+        print("here")
+        print("there", file=sys.stderr)  # nbgrader takes a cell that writes to stderr as failed
+        return length(v)
+
+    assert TASK.mark(talks) == 3.5
+    assert capsys.readouterr() == ("", "")
+
+
+def test_text_and_html_say_the_same():
+    mark = TASK.marked(lambda v: abs(v.sum()))
+    bundle = mark._repr_mimebundle_()
+    text, html = bundle["text/plain"], bundle["text/html"]
+    assert bundle[MIME] == mark.data()
+    assert text.splitlines()[0] == "length: 0 of 3.5 points"
+    assert "✗ 0 of 2  plain vectors: in 1 of 2 cases" in text
+    assert "    Sides do not add up." in text
+    for phrase in ("length: 0 of 3.5 points", "✗&nbsp;0&nbsp;of&nbsp;2", "Sides do not add up.", 'scope="col"'):
+        assert phrase in html
+    assert "<script" not in TASK.marked(lambda _v: "<script>")._repr_html_()
+
+
+@pytest.mark.parametrize(
+    ("build", "sentence"),
+    [
+        (lambda: Task("length", []), "a task must have at least one part, length has none"),
+        (lambda: Task("width", TASK.parts), "each part of width must check width, got a check of length"),
+        (lambda: Task("length", [Part("x", 0, TASK.parts[0].check)]), "the points of the part 'x' must be"),
+        (lambda: TASK.mark(length, seconds=0), "seconds must be a finite number > 0, got 0"),
+    ],
+)
+def test_a_task_that_makes_no_sense_is_refused(build, sentence):
+    with pytest.raises(ValueError, match="^" + sentence):
+        build()
+
+
+def test_a_notebook_shows_the_table_and_returns_the_number():
+    """In a kernel's own shell, without a kernel: what a cell displays, and its value."""
+    from IPython.core.interactiveshell import InteractiveShell
+    from IPython.utils.capture import capture_output
+
+    shell = InteractiveShell.instance()
+    try:
+        shell.push({"TASK": TASK, "length": length})
+        with capture_output() as captured:
+            result = shell.run_cell('TASK.mark("length", globals())').result
+    finally:
+        InteractiveShell.clear_instance()
+    assert result == 3.5
+    assert captured.outputs[0].data[MIME]["points"] == 3.5
+    assert "3.5 of 3.5 points" in captured.outputs[0].data["text/html"]
