@@ -1,0 +1,393 @@
+"""Problem set 1: a curved wall, a sonar with a wide cone, a grid that counts."""
+
+# ruff: noqa: ARG001, ARG005 (a wrong answer may leave out what it is given)
+
+import cmath
+import math
+from collections import Counter
+
+import numpy as np
+
+INF = float("inf")
+TURN = 2 * math.pi
+
+
+# --- ray_arc -----------------------------------------------------------------------------------------------
+
+
+def arc_by_formula(origin, direction, center, radius, start, sweep):
+    """The quadratic equation, and the hit's angle from the middle of the wall."""
+    b, c = 2 * (origin - center) @ direction, (origin - center) @ (origin - center) - radius**2
+    if b * b < 4 * c:
+        return INF
+    middle = np.array([math.cos(start + sweep / 2), math.sin(start + sweep / 2)])
+    hits = [(-b + sign * math.sqrt(b * b - 4 * c)) / 2 for sign in (-1, 1)]
+    hits = [t for t in hits if t >= 0 and (origin + t * direction - center) @ middle >= radius * math.cos(sweep / 2)]
+    return min(hits, default=INF)
+
+
+def arc_by_complex_numbers(origin, direction, center, radius, start, sweep):
+    """Turn the world so that the beam runs along the real axis."""
+    turn = complex(*direction).conjugate()
+    place = (complex(*center) - complex(*origin)) * turn
+    if abs(place.imag) > radius:
+        return INF
+    half = math.sqrt(radius**2 - place.imag**2)
+    for t in (place.real - half, place.real + half):
+        out = (t - place) * turn.conjugate() * cmath.exp(-1j * start)
+        if t >= 0 and cmath.phase(out) % TURN <= sweep:
+            return t
+    return INF
+
+
+def arc_by_bisection(origin, direction, center, radius, start, sweep):
+    """The full circle's crossings by bisection between the foot of the perpendicular and far out on each side."""
+    along = float((center - origin) @ direction)
+    foot = origin + along * direction
+    if math.dist(foot, center) > radius:
+        return INF
+    found = []
+    for sign in (-1, 1):
+        low, high = 0.0, 2 * radius
+        for _ in range(200):
+            middle = (low + high) / 2
+            low, high = (
+                (middle, high) if math.dist(foot + sign * middle * direction, center) < radius else (low, middle)
+            )
+        t = along + sign * low
+        x, y = origin + t * direction - center
+        if t >= 0 and (math.atan2(y, x) - start) % TURN <= sweep:
+            found.append(t)
+    return min(found, default=INF)
+
+
+def arc_general(origin, direction, center, radius, start, sweep, signs=(-1, 1), ahead=True, on=None):
+    to_center = center - origin
+    along = to_center @ direction
+    under = radius**2 - to_center @ to_center + along**2
+    if under < 0:
+        return INF
+    for sign in signs:
+        t = along + sign * math.sqrt(under)
+        x, y = origin + t * direction - center
+        bearing = math.atan2(y, x)
+        met = (bearing - start) % TURN <= sweep if on is None else on(bearing, start, sweep)
+        if met and (t >= 0 or not ahead):
+            return float(t)
+    return INF
+
+
+def arc_near(origin, direction, center, radius, start, sweep):
+    return arc_general(origin, direction, center, radius, start, sweep, signs=(-1,))
+
+
+def arc_whole(origin, direction, center, radius, start, sweep):
+    return arc_general(origin, direction, center, radius, start, sweep, on=lambda bearing, start, sweep: True)
+
+
+def arc_far_first(origin, direction, center, radius, start, sweep):
+    return arc_general(origin, direction, center, radius, start, sweep, signs=(1, -1))
+
+
+def arc_behind(origin, direction, center, radius, start, sweep):
+    return arc_general(origin, direction, center, radius, start, sweep, ahead=False)
+
+
+def arc_clockwise(origin, direction, center, radius, start, sweep):
+    return arc_general(
+        origin, direction, center, radius, start, sweep, on=lambda b, start, sweep: (start - b) % TURN <= sweep
+    )
+
+
+def arc_not_wrapped(origin, direction, center, radius, start, sweep):
+    return arc_general(
+        origin, direction, center, radius, start, sweep, on=lambda b, start, sweep: start <= b <= start + sweep
+    )
+
+
+def arc_wrapped_once(origin, direction, center, radius, start, sweep):
+    return arc_general(
+        origin, direction, center, radius, start, sweep, on=lambda b, start, sweep: start <= b % TURN <= start + sweep
+    )
+
+
+def arc_to_the_end(origin, direction, center, radius, start, sweep):
+    return arc_general(
+        origin,
+        direction,
+        center,
+        radius,
+        start,
+        sweep,
+        on=lambda b, start, end: (b - start) % TURN <= (end - start) % TURN,
+    )
+
+
+def arc_from_robot(origin, direction, center, radius, start, sweep):
+    bearing = math.atan2(direction[1], direction[0])
+    if (bearing - start) % TURN > sweep:
+        return INF
+    return arc_whole(origin, direction, center, radius, start, sweep)
+
+
+def arc_none(origin, direction, center, radius, start, sweep):
+    t = arc_by_formula(origin, direction, center, radius, start, sweep)
+    return None if t == INF else t
+
+
+def arc_raises(origin, direction, center, radius, start, sweep):
+    to_center = center - origin
+    along = to_center @ direction
+    t = along - math.sqrt(radius**2 - to_center @ to_center + along**2)  # less than nothing under the root
+    return arc_by_formula(origin, direction, center, radius, start, sweep) if t == t else INF
+
+
+# --- sonar_reading -----------------------------------------------------------------------------------------
+
+
+def sonar_by_loop(ranges, angles, axis, cone, range_min, range_max):
+    best = math.inf
+    for distance, angle in zip(ranges, angles, strict=True):
+        away = (angle - axis) % TURN
+        if min(away, TURN - away) <= cone / 2 and range_min <= distance <= range_max:
+            best = min(best, distance)
+    return best
+
+
+def sonar_by_cosine(ranges, angles, axis, cone, range_min, range_max):
+    """How far an arrow lies from the axis, from the product of the two; echoes in the order of their distance."""
+    near = np.cos(angles - axis) >= np.cos(min(cone / 2, np.pi))
+    heard = np.sort(ranges[near & np.isfinite(ranges)])
+    heard = heard[np.searchsorted(heard, range_min) :]
+    return float(heard[0]) if len(heard) and heard[0] <= range_max else INF
+
+
+def sonar_general(ranges, angles, axis, cone, read, half=0.5, wrapped=True):
+    away = np.abs(angles - axis)
+    if wrapped:
+        away = np.minimum(away % TURN, -away % TURN)
+    mine = ranges[away <= half * cone]
+    return float(read(mine))
+
+
+def least(values):
+    return min(values.tolist(), default=INF)
+
+
+def sonar_twice_as_wide(ranges, angles, axis, cone, range_min, range_max):
+    return sonar_general(ranges, angles, axis, cone, lambda r: least(r[(r >= range_min) & (r <= range_max)]), half=1.0)
+
+
+def sonar_not_wrapped(ranges, angles, axis, cone, range_min, range_max):
+    return sonar_general(
+        ranges, angles, axis, cone, lambda r: least(r[(r >= range_min) & (r <= range_max)]), wrapped=False
+    )
+
+
+def sonar_hidden(ranges, angles, axis, cone, range_min, range_max):
+    nearest = sonar_general(ranges, angles, axis, cone, lambda r: least(r[~np.isnan(r)]))
+    return nearest if range_min <= nearest <= range_max else INF
+
+
+def sonar_cut(ranges, angles, axis, cone, range_min, range_max):
+    nearest = sonar_general(ranges, angles, axis, cone, lambda r: least(r[~np.isnan(r)]))
+    return nearest if nearest == INF else min(max(nearest, range_min), range_max)
+
+
+def sonar_no_min(ranges, angles, axis, cone, range_min, range_max):
+    return sonar_general(ranges, angles, axis, cone, lambda r: least(r[r <= range_max]))
+
+
+def sonar_no_max(ranges, angles, axis, cone, range_min, range_max):
+    return sonar_general(ranges, angles, axis, cone, lambda r: least(r[r >= range_min]))
+
+
+def sonar_mean(ranges, angles, axis, cone, range_min, range_max):
+    def mean(r):
+        r = r[(r >= range_min) & (r <= range_max)]
+        return r.mean() if len(r) else INF
+
+    return sonar_general(ranges, angles, axis, cone, mean)
+
+
+def sonar_nan(ranges, angles, axis, cone, range_min, range_max):
+    """Drops what is out of the limits, and keeps what is no number."""
+    return sonar_general(
+        ranges, angles, axis, cone, lambda r: np.min(r[~((r < range_min) | (r > range_max))], initial=INF)
+    )
+
+
+def sonar_argmin(ranges, angles, axis, cone, range_min, range_max):
+    """Fails on a cone that holds nothing."""
+    return sonar_general(ranges, angles, axis, cone, lambda r: np.min(r[(r >= range_min) & (r <= range_max)]))
+
+
+# --- busy_cells --------------------------------------------------------------------------------------------
+
+
+def busy_by_counter(points, corner, resolution, shape, least):
+    count = Counter()
+    for x, y in points.tolist():
+        i, j = math.floor((x - corner[0]) / resolution), math.floor((y - corner[1]) / resolution)
+        if 0 <= i < shape[0] and 0 <= j < shape[1]:
+            count[i, j] += 1
+    return [
+        (corner[0] + (i + 0.5) * resolution, corner[1] + (j + 0.5) * resolution)
+        for (i, j), hits in count.items()
+        if hits >= least
+    ]
+
+
+def busy_by_table(points, corner, resolution, shape, least):
+    """A table with a frame of one cell around the board, which takes what lies beside it."""
+    cells = np.clip(np.floor((points - corner) / resolution).astype(int), -1, shape) + 1
+    table = np.bincount(cells[:, 0] * (shape[1] + 2) + cells[:, 1], minlength=(shape[0] + 2) * (shape[1] + 2))
+    table = table.reshape(shape[0] + 2, shape[1] + 2)[1:-1, 1:-1]
+    return corner + resolution / 2 + resolution * np.argwhere(table >= least)
+
+
+def busy_general(points, corner, resolution, shape, least, cut=np.floor, start=None, on=True):
+    cells = cut((points - (corner if start is None else start)) / resolution)
+    if on:
+        cells = cells[(cells >= 0).all(axis=1) & (cells < np.array(shape)).all(axis=1)]
+    count = Counter(map(tuple, cells.tolist()))
+    return np.array([cell for cell, hits in count.items() if hits >= least]).reshape(-1, 2)
+
+
+def busy_corner(points, corner, resolution, shape, least):
+    return corner + resolution * busy_general(points, corner, resolution, shape, least)
+
+
+def busy_origin(points, corner, resolution, shape, least):
+    cells = busy_general(points, corner, resolution, shape, least, start=np.zeros(2))
+    return corner + resolution * (cells + 0.5)
+
+
+def busy_from_corner(points, corner, resolution, shape, least):
+    return resolution * (busy_general(points, corner, resolution, shape, least) + 0.5)
+
+
+def busy_numbers(points, corner, resolution, shape, least):
+    return busy_general(points, corner, resolution, shape, least)
+
+
+def busy_more_than(points, corner, resolution, shape, least):
+    return corner + resolution * (busy_general(points, corner, resolution, shape, least + 1) + 0.5)
+
+
+def busy_any(points, corner, resolution, shape, least):
+    return corner + resolution * (busy_general(points, corner, resolution, shape, 1) + 0.5)
+
+
+def busy_beside(points, corner, resolution, shape, least):
+    return corner + resolution * (busy_general(points, corner, resolution, shape, least, on=False) + 0.5)
+
+
+def busy_table(points, corner, resolution, shape, least):
+    """Counts in a table, without a look at who is beside it."""
+    table = np.zeros(shape, dtype=int)
+    cells = np.floor((points - corner) / resolution).astype(int)
+    np.add.at(table, (cells[:, 0], cells[:, 1]), 1)
+    return corner + resolution * (np.argwhere(table >= least) + 0.5)
+
+
+def busy_half_checked(points, corner, resolution, shape, least):
+    table = np.zeros(shape, dtype=int)
+    cells = np.floor((points - corner) / resolution).astype(int)
+    cells = cells[(cells < np.array(shape)).all(axis=1)]
+    np.add.at(table, (cells[:, 0], cells[:, 1]), 1)
+    return corner + resolution * (np.argwhere(table >= least) + 0.5)
+
+
+def busy_clipped(points, corner, resolution, shape, least):
+    table = np.zeros(shape, dtype=int)
+    i, j = np.clip(np.floor((points - corner) / resolution), 0, np.array(shape) - 1).astype(int).T
+    np.add.at(table, (i, j), 1)
+    return corner + resolution * (np.argwhere(table >= least) + 0.5)
+
+
+def busy_int(points, corner, resolution, shape, least):
+    return corner + resolution * (busy_general(points, corner, resolution, shape, least, cut=np.trunc) + 0.5)
+
+
+def busy_round(points, corner, resolution, shape, least):
+    return corner + resolution * (busy_general(points, corner, resolution, shape, least, cut=np.round) + 0.5)
+
+
+def busy_upper(points, corner, resolution, shape, least):
+    cells = busy_general(points, corner, resolution, shape, least, cut=lambda place: np.ceil(place) - 1)
+    return corner + resolution * (cells + 0.5)
+
+
+def busy_swapped(points, corner, resolution, shape, least):
+    return corner + resolution * (busy_general(points, corner, resolution, shape[::-1], least) + 0.5)
+
+
+def busy_in_place(points, corner, resolution, shape, least):
+    points -= corner
+    return busy_by_counter(points + corner, corner, resolution, shape, least)
+
+
+def busy_by_boxes(points, corner, resolution, shape, least):
+    """Every cell of a small board as a half-open box; the large one of the example by its busy part alone."""
+    centers = busy_general(points, corner, resolution, shape, least) + 0.5
+    return [tuple(center) for center in corner + resolution * centers]
+
+
+# Each wrong answer with the points that it gets of the task's five, and the short name of its fault.
+ANSWERS = {
+    "ray_arc": {
+        "right": {
+            "formula": arc_by_formula,
+            "complex numbers": arc_by_complex_numbers,
+            "bisection": arc_by_bisection,
+        },
+        "wrong": {
+            "near root": (arc_near, 2, "near root alone"),
+            "whole circle": (arc_whole, 1, "whole circle for arc"),
+            "far root first": (arc_far_first, 4, "far root before near"),
+            "behind": (arc_behind, 4, "hits behind the robot"),
+            "clockwise": (arc_clockwise, 0, "clockwise for counter-clockwise"),
+            "not wrapped": (arc_not_wrapped, 4, "bearing not wrapped"),
+            "wrapped once": (arc_wrapped_once, 4, "bearing not wrapped"),
+            "sweep as end": (arc_to_the_end, 1, "sweep taken for the end"),
+            "from the robot": (arc_from_robot, 0, "bearing from the robot"),
+            "none for a miss": (arc_none, 0, "None for no hit"),
+            "root below zero": (arc_raises, 3, "raises ValueError"),
+        },
+    },
+    "sonar_reading": {
+        "right": {"loop": sonar_by_loop, "cosine": sonar_by_cosine},
+        "wrong": {
+            "twice as wide": (sonar_twice_as_wide, 0, "whole cone to each side"),
+            "not wrapped": (sonar_not_wrapped, 4, "bearing not wrapped"),
+            "too near hides": (sonar_hidden, 3, "too near hides the rest"),
+            "cut": (sonar_cut, 3, "cut to the limits"),
+            "no range_min": (sonar_no_min, 3, "no range_min"),
+            "no range_max": (sonar_no_max, 4, "no range_max"),
+            "mean": (sonar_mean, 0, "mean"),
+            "nan": (sonar_nan, 4, "nan spreads"),
+            "empty cone": (sonar_argmin, 3, "raises ValueError"),
+        },
+    },
+    "busy_cells": {
+        "right": {"counter": busy_by_counter, "table": busy_by_table, "boxes": busy_by_boxes},
+        "wrong": {
+            "corner": (busy_corner, 0, "corner for centre"),
+            "origin": (busy_origin, 0, "world origin for corner"),
+            "from the corner": (busy_from_corner, 0, "places seen from the corner"),
+            "numbers": (busy_numbers, 0, "cell numbers for metres"),
+            "more than": (busy_more_than, 0, "more than, for at least"),
+            "any": (busy_any, 3, "no threshold"),
+            "beside": (busy_beside, 3, "cells beside the board"),
+            "table": (busy_table, 3, "raises IndexError"),
+            "half checked": (busy_half_checked, 3, "negative index"),
+            "clipped": (busy_clipped, 3, "pushed onto the board"),
+            "int": (busy_int, 4, "int for floor"),
+            "round": (busy_round, 1, "round for floor"),
+            "upper border": (busy_upper, 4, "upper border for lower"),
+            "x and y": (busy_swapped, 1, "x and y changed places"),
+            "in place": (busy_in_place, 0, "changes its arguments"),
+        },
+    },
+}

@@ -1,0 +1,297 @@
+"""The problem sets: any correct answer gets all points, each listed wrong one exactly its own, and its fault is named.
+
+The answers are in tests/answers/assignment_N.py. Hidden tests are called directly; the visible ones are read from the
+source notebooks, whose stored outputs nbval compares.
+"""
+
+import ast
+import contextlib
+import io
+import json
+import re
+import sys
+from importlib import import_module
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.append(str(ROOT / "notebooks" / "assignments"))  # the teacher's package `grader` is not part of primkit
+SOURCE = ROOT / "notebooks" / "assignments" / "source"
+ANSWERS = {}
+for path in sorted((ROOT / "tests" / "answers").glob("assignment_*.py")):
+    ANSWERS |= import_module(f"tests.answers.{path.stem}").ANSWERS
+NOTEBOOKS = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted(SOURCE.glob("*/*.ipynb"))}
+
+BEGIN, END = r"^[ \t]*### BEGIN (SOLUTION|HIDDEN TESTS)\n", r"^[ \t]*### END (SOLUTION|HIDDEN TESTS)\n?"
+MARKS = re.compile(rf"{BEGIN}|{END}", re.MULTILINE)
+HIDDEN = re.compile(r'^(\w+)\.(\w+)\.mark\("(\w+)", globals\(\)', re.MULTILINE)
+
+
+def source(cell):
+    return "".join(cell["source"])
+
+
+def graded(cell):
+    return cell["metadata"].get("nbgrader", {})
+
+
+def cells_of(notebook):
+    """Return a notebook's cells by their names for nbgrader."""
+    return {graded(cell)["grade_id"]: cell for cell in notebook["cells"] if graded(cell)}
+
+
+CELLS = {ident: cell for notebook in NOTEBOOKS.values() for ident, cell in cells_of(notebook).items()}
+BOOK = {ident: name for name, notebook in NOTEBOOKS.items() for ident in cells_of(notebook)}
+
+
+def hidden_task(ident):
+    """Return the task that a hidden cell marks: its room and its name are read from the cell."""
+    room, task, function = HIDDEN.search(source(CELLS[f"{ident}-hidden"])).groups()
+    assert function == ident
+    return getattr(import_module(f"grader.{room}"), task)
+
+
+TASKS = {
+    ident.removesuffix("-hidden"): hidden_task(ident.removesuffix("-hidden"))
+    for ident in CELLS
+    if ident.endswith("-hidden")
+}
+
+
+def points_of(ident):
+    return graded(CELLS[ident])["points"]
+
+
+def run(cell, scope):
+    """Run a cell's code without what it prints."""
+    with contextlib.redirect_stdout(io.StringIO()):
+        exec(compile(source(cell), "<cell>", "exec"), scope)
+
+
+def setup_of(task):
+    """Return what a notebook's setup and the task's solution cell define: imports, and the reference's own solution."""
+    scope = {}
+    run(CELLS[f"{BOOK[task]}-setup"], scope)
+    run(CELLS[task], scope)
+    return scope
+
+
+def visible_points(task, function):
+    """Return the points of a function in the visible tests: all or none, as nbgrader counts."""
+    scope = setup_of(task) | {task: function}
+    try:
+        run(CELLS[f"{task}-visible"], scope)
+    except Exception:
+        return 0
+    return points_of(f"{task}-visible")
+
+
+def table(kind):
+    rows = []
+    for task, answers in ANSWERS.items():
+        for name, answer in answers[kind].items():
+            rows.append(pytest.param(task, *(answer if isinstance(answer, tuple) else (answer,)), id=f"{task}-{name}"))
+    return rows
+
+
+# --- the hidden tests ----------------------------------------------------------------------------------------
+
+
+def test_every_task_has_answers_and_every_answer_a_task():
+    assert set(ANSWERS) == set(TASKS)
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_every_task_has_two_other_right_ways(task):
+    assert len(set(ANSWERS[task]["right"].values())) >= 2
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_two_to_four_parts_whose_points_are_those_of_the_cell(task):
+    assert 2 <= len(TASKS[task].parts) <= 4
+    assert TASKS[task].points == points_of(f"{task}-hidden")
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_the_reference_gets_all_points(task):
+    mark = TASKS[task].marked(TASKS[task].parts[0].check.reference)
+    assert mark.points == mark.of, mark
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_the_notebooks_own_solution_gets_all_points(task):
+    solution = setup_of(task)[task]
+    mark = TASKS[task].marked(solution)
+    assert mark.points == mark.of, mark
+    assert visible_points(task, solution) == points_of(f"{task}-visible")
+
+
+@pytest.mark.parametrize(("task", "function"), table("right"))
+def test_any_correct_way_gets_all_points(task, function):
+    mark = TASKS[task].marked(function)
+    assert mark.points == mark.of, mark
+    assert visible_points(task, function) == points_of(f"{task}-visible")
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_an_untouched_stub_gets_nothing(task):
+    def stub(*_arguments):
+        raise NotImplementedError
+
+    assert TASKS[task].marked(stub).points == 0
+    assert visible_points(task, stub) == 0
+    assert TASKS[task].marked(task, {}).points == 0
+
+
+@pytest.mark.parametrize(("task", "function", "points", "fault"), table("wrong"))
+def test_a_wrong_answer_gets_exactly_its_points_and_its_name(task, function, points, fault):
+    mark = TASKS[task].marked(function)
+    assert mark.points + visible_points(task, function) == points, mark
+    assert fault in {row.answer.fault for row in mark.rows if not row.answer.right}, mark
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_every_part_fails_for_a_listed_wrong_answer(task):
+    open_parts = {row.says for row in TASKS[task].marked(lambda *_arguments: ...).rows}
+    for function, *_ in ANSWERS[task]["wrong"].values():
+        open_parts -= {
+            row.says for row in TASKS[task].marked(function).rows if row.answer.verdict in ("wrong", "error")
+        }
+    assert not open_parts
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_no_part_is_lost_by_every_wrong_answer_for_the_same_reason_as_another(task):
+    """Each part asks a question of its own: some wrong answer loses it and keeps another part."""
+    alone = set()
+    for function, *_ in ANSWERS[task]["wrong"].values():
+        rows = TASKS[task].marked(function).rows
+        if any(row.answer.right for row in rows):
+            alone |= {row.says for row in rows if not row.answer.right}
+    assert alone
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_every_fault_is_named_for_a_listed_wrong_answer(task):
+    listed = {fault for _, _, fault in ANSWERS[task]["wrong"].values()}
+    for part in TASKS[task].parts:
+        for fault in part.check.faults:
+            assert fault.name, fault.says
+            assert fault.name in listed, fault.name
+
+
+@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize("nonsense", [None, "text", [], {}, float("nan"), object()], ids=type)
+def test_nonsense_gets_an_answer_and_no_point(task, nonsense):
+    mark = TASKS[task].marked(lambda *_arguments: nonsense)
+    assert not any("0x" in row.answer.says for row in mark.rows)
+    assert not any("cannot be judged" in row.answer.says for row in mark.rows), mark
+    assert mark.points == 0, mark
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_hints_do_not_hold_the_solution(task):
+    """A hint asks or explains: no line of the solution stands in it."""
+    lines = [line.strip() for line in re.split(BEGIN, source(CELLS[task]), flags=re.MULTILINE)[-1].splitlines()]
+    for part in TASKS[task].parts:
+        for fault in part.check.faults:
+            assert not any(len(line) > 12 and line in fault.says for line in lines)
+
+
+# --- the notebooks -------------------------------------------------------------------------------------------
+
+
+def text(notebook):
+    return "\n\n".join(source(cell) for cell in notebook["cells"] if cell["cell_type"] == "markdown")
+
+
+@pytest.mark.parametrize("name", NOTEBOOKS)
+def test_one_title_and_levels_in_order(name):
+    levels = [len(marks) for marks in re.findall(r"^(#+) ", text(NOTEBOOKS[name]), re.MULTILINE)]
+    assert levels[0] == 1
+    assert levels.count(1) == 1
+    assert all(after <= before + 1 for before, after in pairwise(levels))
+
+
+@pytest.mark.parametrize("name", NOTEBOOKS)
+def test_the_table_states_the_points_of_each_task(name):
+    rows = re.findall(r"^\| .*?`(\w+)` \| (\d+) \|$", text(NOTEBOOKS[name]), re.MULTILINE)
+    cells = cells_of(NOTEBOOKS[name])
+    for function, points in rows:
+        kinds = [f"{function}-visible", f"{function}-hidden"]
+        assert sum(graded(cells[kind])["points"] for kind in kinds) == int(points)
+    assert {function for function, _ in rows} == {task for task in TASKS if BOOK[task] == name}
+    total = int(re.search(r"^\| \*\*all\*\* .*\*\*(\d+)\*\* \|$", text(NOTEBOOKS[name]), re.MULTILINE)[1])
+    assert total == sum(graded(cell).get("points", 0) for cell in NOTEBOOKS[name]["cells"])
+
+
+@pytest.mark.parametrize("name", NOTEBOOKS)
+def test_a_picture_is_followed_by_words(name):
+    cells = NOTEBOOKS[name]["cells"]
+    for cell, after in pairwise(cells):
+        if any("image/png" in output.get("data", {}) for output in cell.get("outputs", [])):
+            assert source(after).startswith("*Figure: ")
+
+
+@pytest.mark.parametrize("name", NOTEBOOKS)
+def test_every_cell_was_run_in_order_without_an_error(name):
+    code = [cell for cell in NOTEBOOKS[name]["cells"] if cell["cell_type"] == "code"]
+    assert [cell["execution_count"] for cell in code] == list(range(1, len(code) + 1))
+    assert not any(output["output_type"] == "error" for cell in code for output in cell["outputs"])
+    assert not any(output.get("name") == "stderr" for cell in code for output in cell["outputs"])
+    assert max(source(cell).count("\n") for cell in code if not graded(cell).get("solution")) < 20
+
+
+@pytest.mark.parametrize("ident", CELLS)
+def test_nbgrader_reads_the_cells(ident):
+    cell = CELLS[ident]
+    settings = graded(cell)
+    assert settings["schema_version"] == 3
+    if settings["solution"]:
+        assert not settings["locked"]
+    else:
+        assert settings["locked"], "whoever changes it by mistake gets it back when it is marked"
+    if settings["grade"]:
+        assert settings["points"] > 0
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_markers_stand_around_every_solution_and_every_hidden_test(task):
+    for ident, word in ((task, "SOLUTION"), (f"{task}-hidden", "HIDDEN TESTS")):
+        found = [mark.group().split()[1:] for mark in MARKS.finditer(source(CELLS[ident]) + "\n")]
+        assert [" ".join(words) for words in found] == [f"BEGIN {word}", f"END {word}"]
+    seen = MARKS.split(source(CELLS[f"{task}-visible"]))
+    assert len(seen) == 1
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_the_stub_documents_shapes_units_and_an_example(task):
+    function = next(
+        node
+        for node in ast.walk(ast.parse(source(CELLS[task])))
+        if isinstance(node, ast.FunctionDef) and node.name == task
+    )
+    words = ast.get_docstring(function)
+    assert "Example" in words
+    assert re.search(r"metres|radians|shares", words)
+    reference = TASKS[task].parts[0].check.reference
+    names = [argument.arg for argument in function.args.args]
+    assert list(reference.__code__.co_varnames[: len(names)]) == names
+    assert all(argument.annotation for argument in function.args.args)
+    assert function.returns
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_no_library_call_has_the_name_of_a_task(task):
+    """And no lesson does: a solution cannot be looked up by its name."""
+    files = [*(ROOT / "primkit").rglob("*.py"), *(ROOT / "notebooks").glob("*.ipynb")]
+    assert not any(re.search(rf"\bdef {task}\b", path.read_text(encoding="utf-8")) for path in files)
+
+
+def test_grader_doctests():
+    import doctest
+
+    for room in {TASKS[task].parts[0].check.reference.__module__ for task in TASKS}:
+        assert doctest.testmod(import_module(room)).failed == 0
