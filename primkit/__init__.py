@@ -28,6 +28,7 @@ _STORY = {
     "robot": ("teleport_poses", "skipped_waypoints", "drive"),
     "raycast": ("cast_rays",),
     "lidar": ("Lidar", "Scans", "scan", "scan_blocks"),
+    "personal": ("personal_world",),
     "grid": ("Grid",),
     "changes": ("MovingGrid",),
     "segmentation": ("segment", "kmeans", "count_by_silhouette", "link"),
@@ -94,6 +95,7 @@ if TYPE_CHECKING:
     from .lidar import Lidar, Scans, scan, scan_blocks
     from .lines import Line, find_lines, fit_line
     from .measure import Detection, measure_shape
+    from .personal import personal_world
     from .pipeline import PAPER, ROBUST, Settings, find_shapes
     from .plots import (
         plot_clusters,

@@ -26,6 +26,7 @@ ORDER = (
         "robot",
         "raycast",
         "lidar",
+        "personal",
         "grid",
         "changes",
         "segmentation",

@@ -11,7 +11,10 @@ import numpy as np
 import pytest
 
 from primkit.checks import Check, Fault, judges
-from primkit.grading import MIME, OutOfTime, Part, Task, TimeLimit
+from primkit.formats import save_world
+from primkit.grading import MIME, OutOfTime, Part, Task, TimeLimit, personal_truth
+from primkit.grading.truth import TRUTH
+from primkit.personal import personal_world
 
 posix = pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="Windows has no alarm")
 
@@ -276,3 +279,12 @@ def test_a_notebook_shows_the_table_and_returns_the_number():
     assert result == 3.5
     assert captured.outputs[0].data[MIME]["points"] == 3.5
     assert "3.5 of 3.5 points" in captured.outputs[0].data["text/html"]
+
+
+def test_the_truth_is_the_student_s_while_graded_and_the_demonstration_otherwise(tmp_path, monkeypatch):
+    monkeypatch.delenv(TRUTH, raising=False)
+    assert personal_truth() == personal_world("demonstration", salt="the salt of the demonstration")
+    hers = personal_world("ada", salt="0123456789abcdef")
+    save_world(hers, tmp_path / "truth.geojson")
+    monkeypatch.setenv(TRUTH, str(tmp_path / "truth.geojson"))
+    assert personal_truth() == hers

@@ -22,11 +22,13 @@ The rooms, each of which imports only those before it:
 ``limit.py``  a time limit, and what it can stop
 ``table.py``  ``Mark``: the points as text, as HTML, and for a report
 ``task.py``   ``Part`` and ``Task``
+``truth.py``  the student's own board, while it is graded
 ============  ======================================================
 """
 
 from .limit import OutOfTime, TimeLimit
 from .table import MIME, Mark, Row
 from .task import Part, Task
+from .truth import personal_truth
 
-__all__ = ["Part", "Task", "Mark", "Row", "MIME", "OutOfTime", "TimeLimit"]
+__all__ = ["Part", "Task", "personal_truth", "Mark", "Row", "MIME", "OutOfTime", "TimeLimit"]
