@@ -1,0 +1,281 @@
+"""Problem set 2: one scan cut at its widest gaps, a wall in fog, a corridor of two parallel walls."""
+
+# ruff: noqa: ARG001 (a wrong answer may leave out what it is given)
+
+import math
+
+import numpy as np
+
+import primkit as pk
+
+TURN = 2 * math.pi
+
+
+# --- cut_scan ----------------------------------------------------------------------------------------------
+
+
+def cut_by_joining(points, k):
+    """Join neighbours in the order of their gaps until k groups are left."""
+    n = len(points)
+    owner = list(range(n))
+
+    def head(i):
+        while owner[i] != i:
+            i = owner[i]
+        return i
+
+    gaps = sorted((math.dist(points[i], points[(i + 1) % n]), i) for i in range(n))
+    for _, i in gaps[: n - k]:
+        owner[head(i)] = head((i + 1) % n)
+    return [head(i) for i in range(n)]
+
+
+def cut_by_threshold(points, k):
+    """The k-th widest gap is the least one that separates."""
+    ahead = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
+    separates = ahead >= np.sort(ahead)[-k]
+    labels = np.roll(np.cumsum(separates), 1)
+    labels[0] = 0
+    return labels % k
+
+
+def cut_ring(gaps, k):
+    begins = np.zeros(len(gaps), dtype=int)
+    begins[np.argsort(gaps)[len(gaps) - k :]] = 1
+    return np.cumsum(begins) % k
+
+
+def cut_open(points, k):
+    gaps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    cuts = np.sort(np.argsort(gaps)[::-1][: k - 1])
+    return np.searchsorted(cuts, np.arange(len(points)), side="left")
+
+
+def cut_once_more(points, k):
+    gaps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    cuts = np.sort(np.argsort(gaps)[::-1][:k])
+    return np.searchsorted(cuts, np.arange(len(points)), side="left")
+
+
+def cut_in_bearing(points, k):
+    bearing = np.unwrap(np.arctan2(points[:, 1], points[:, 0]))
+    gaps = np.diff(bearing, prepend=bearing[-1] - TURN)
+    return cut_ring(np.abs((gaps + np.pi) % TURN - np.pi), k)
+
+
+def cut_in_range(points, k):
+    away = np.linalg.norm(points, axis=1)
+    return cut_ring(np.abs(away - np.roll(away, 1)), k)
+
+
+def cut_narrowest(points, k):
+    return cut_ring(-np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1), k)
+
+
+def cut_by_linking(points, k):
+    """A fixed reach, and k unused."""
+    return pk.link(points, 0.05)
+
+
+# --- wall_in_fog -------------------------------------------------------------------------------------------
+
+
+def fog_by_ransac(points, threshold, rng):
+    """Random pairs; a line counts when nothing lies behind it, seen from the robot."""
+    best, most = None, 0
+    for _ in range(1500 if len(points) > 1 else 0):
+        p, q = points[rng.choice(len(points), 2, replace=False)]
+        if (p == q).all():
+            continue
+        angle = math.atan2(q[0] - p[0], p[1] - q[1])
+        offset = math.cos(angle) * p[0] + math.sin(angle) * p[1]
+        if offset < 0:
+            angle, offset = angle + math.pi, -offset
+        out = points @ (math.cos(angle), math.sin(angle)) - offset
+        count = int((abs(out) <= threshold).sum())
+        if count > most and out.max() <= threshold:
+            best, most = abs(out) <= threshold, count
+    if best is None:
+        return None
+    line = pk.fit_line(points[best])
+    return line.angle, line.offset
+
+
+def fog_by_bearings(points, threshold, rng):
+    """For each bearing the farthest hit carries the line; the fullest band wins, first coarsely, then finely."""
+    if len(np.unique(points, axis=0)) < 2:
+        return None
+    angles = np.linspace(0, TURN, 3000, endpoint=False)
+    along = points @ np.array([np.cos(angles), np.sin(angles)])
+    farthest = along.max(axis=0)
+    counts = (along >= farthest - threshold).sum(axis=0) * (farthest >= 0)
+    line = pk.fit_line(points[along[:, counts.argmax()] >= farthest[counts.argmax()] - threshold])
+    for _ in range(5):
+        line = pk.fit_line(points[np.abs(line.signed_distance(points)) <= threshold])
+    return line.angle, line.offset
+
+
+def fog_ransac_plain(points, threshold, rng):
+    """Most inliers, and no question about what lies behind."""
+    if len(np.unique(points, axis=0)) < 2:
+        return None
+    best = max(pk.find_lines(points, threshold, rng=0), key=lambda found: found.inliers.sum())
+    return best.line.angle, best.line.offset
+
+
+def fog_least_squares(points, threshold, rng):
+    line = pk.fit_line(points)
+    return None if line is None else (line.angle, line.offset)
+
+
+def fog_nearest(points, threshold, rng):
+    """Seen from the wrong side: nothing lies in front of the line."""
+    if len(np.unique(points, axis=0)) < 2:
+        return None
+    angles = np.linspace(0, TURN, 720, endpoint=False)
+    along = points @ np.array([np.cos(angles), np.sin(angles)])
+    nearest = along.min(axis=0)
+    counts = np.where(nearest > 0, (along <= nearest + threshold).sum(axis=0), 0)
+    k = int(counts.argmax())
+    return float(angles[k]), float(nearest[k])
+
+
+def fog_never_none(points, threshold, rng):
+    if len(points) == 0:
+        return 0.0, 0.0
+    return fog_by_ransac(points, threshold, rng) or (0.0, float(points[0, 0]))
+
+
+def fog_farthest_pair(points, threshold, rng):
+    """Through the two hits that are farthest from the robot."""
+    p, q = points[np.argsort(np.linalg.norm(points, axis=1))[-2:]]
+    angle = math.atan2(q[0] - p[0], p[1] - q[1])
+    return angle, math.cos(angle) * p[0] + math.sin(angle) * p[1]
+
+
+# --- corridor ----------------------------------------------------------------------------------------------
+
+
+def corridor_by_formula(left, right):
+    """The bearing for which the pooled scatter across is least, in one formula."""
+    x, y = np.concatenate([left - left.mean(axis=0), right - right.mean(axis=0)]).T
+    bearing = 0.5 * math.atan2(2 * (x * y).sum(), (x * x).sum() - (y * y).sum())
+    normal = np.array([-math.sin(bearing), math.cos(bearing)])
+    return bearing, abs(normal @ left.mean(axis=0) - normal @ right.mean(axis=0))
+
+
+def corridor_by_search(left, right):
+    """The bearing by golden sections, after a coarse search; offsets are means."""
+    from scipy.optimize import minimize_scalar
+
+    def squares(bearing):
+        normal = np.array([-math.sin(bearing), math.cos(bearing)])
+        return sum(((wall @ normal - (wall @ normal).mean()) ** 2).sum() for wall in (left, right))
+
+    start = min(np.linspace(0, math.pi, 180, endpoint=False), key=squares)
+    bearing = minimize_scalar(squares, bracket=(start - 0.02, start, start + 0.02), tol=1e-13).x
+    normal = np.array([-math.sin(bearing), math.cos(bearing)])
+    return bearing + math.pi, abs((left @ normal).mean() - (right @ normal).mean())
+
+
+def corridor_by_eigenvectors(left, right):
+    """The pooled covariance, with the number of points as weight."""
+    pooled = sum(len(wall) * np.cov(wall.T, bias=True) for wall in (left, right) if len(wall) > 1)
+    normal = np.linalg.eigh(pooled)[1][:, 0]
+    return math.atan2(normal[0], -normal[1]), abs(normal @ (left.mean(axis=0) - right.mean(axis=0)))
+
+
+def bearing_of(points):
+    along = np.linalg.svd(points - points.mean(axis=0))[2][0]
+    return math.atan2(along[1], along[0])
+
+
+def with_width(bearing, left, right):
+    normal = np.array([-math.sin(bearing), math.cos(bearing)])
+    return bearing, abs(normal @ (left.mean(axis=0) - right.mean(axis=0)))
+
+
+def corridor_mean(left, right):
+    x, y = (np.array([math.cos(2 * b), math.sin(2 * b)]) for b in (bearing_of(left), bearing_of(right)))
+    return with_width(math.atan2(*(x + y)[::-1]) / 2, left, right)
+
+
+def corridor_plain_mean(left, right):
+    slopes = [math.atan(math.tan(bearing_of(wall))) for wall in (left, right)]
+    return with_width(sum(slopes) / 2, left, right)
+
+
+def corridor_together(left, right):
+    return with_width(bearing_of(np.vstack([left, right])), left, right)
+
+
+def corridor_means(left, right):
+    return corridor_by_formula(left, right)[0], math.dist(left.mean(axis=0), right.mean(axis=0))
+
+
+def corridor_across(left, right):
+    bearing, width = corridor_by_formula(left, right)
+    return bearing + math.pi / 2, width
+
+
+def corridor_in_y(left, right):
+    x, y = np.concatenate([left - left.mean(axis=0), right - right.mean(axis=0)]).T
+    return with_width(math.atan2((x * y).sum(), (x * x).sum()), left, right)
+
+
+def corridor_longer(left, right):
+    return with_width(bearing_of(left if len(left) >= len(right) else right), left, right)
+
+
+def corridor_half(left, right):
+    bearing, width = corridor_by_formula(left, right)
+    return bearing, width / 2
+
+
+def corridor_degrees(left, right):
+    bearing, width = corridor_by_formula(left, right)
+    return math.degrees(bearing), width
+
+
+# Each wrong answer with the points that it gets of the task's five, and the short name of its fault.
+ANSWERS = {
+    "cut_scan": {
+        "right": {"joining": cut_by_joining, "threshold": cut_by_threshold},
+        "wrong": {
+            "open chain": (cut_open, 3, "ring not closed"),
+            "one cut too many": (cut_once_more, 0, "one cut too many"),
+            "in bearing": (cut_in_bearing, 4, "gap in bearing"),
+            "in range": (cut_in_range, 3, "gap in range"),
+            "narrowest": (cut_narrowest, 1, "narrowest gaps"),
+            "linking": (cut_by_linking, 1, None),
+        },
+    },
+    "wall_in_fog": {
+        "right": {"random pairs": fog_by_ransac, "bearings": fog_by_bearings},
+        "wrong": {
+            "most inliers": (fog_ransac_plain, 2, "hits behind the wall"),
+            "least squares": (fog_least_squares, 1, "least squares over all"),
+            "wrong side": (fog_nearest, 1, "hits behind the wall"),
+            "never none": (fog_never_none, 3, "a line from one point"),
+            "farthest pair": (fog_farthest_pair, 3, "raises ValueError"),
+        },
+    },
+    "corridor": {
+        "right": {
+            "formula": corridor_by_formula,
+            "search": corridor_by_search,
+            "eigenvectors": corridor_by_eigenvectors,
+        },
+        "wrong": {
+            "mean of two": (corridor_mean, 3, "mean of two bearings"),
+            "plain mean": (corridor_plain_mean, 3, "mean of two bearings"),
+            "together": (corridor_together, 1, "one line for both"),
+            "distance of means": (corridor_means, 1, "distance of the means"),
+            "across": (corridor_across, 0, "across for along"),
+            "in y": (corridor_in_y, 2, "errors in y"),
+            "longer alone": (corridor_longer, 3, "longer wall alone"),
+            "half the width": (corridor_half, 0, "half the width"),
+            "degrees": (corridor_degrees, 0, None),
+        },
+    },
+}
