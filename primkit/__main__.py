@@ -1,8 +1,8 @@
 """The command line: ``primkit``, or ``python -m primkit``.
 
 In:  a command and its options; ``primkit map --help`` explains them.
-Out: text on the screen, files in a folder, and an exit code: 0 done, 2 a wrong value or a file that cannot be
-     read or written (one sentence on stderr says which), 130 stopped by Ctrl-C.
+Out: text on the screen, files in a folder, and an exit code: 0 done, 1 ``primkit teach`` found a fault, 2 a wrong
+     value or a file that cannot be read or written (one sentence on stderr says which), 130 stopped by Ctrl-C.
 
 >>> main(["--version"])  # doctest: +ELLIPSIS
 primkit ...
@@ -19,7 +19,7 @@ import sys
 from collections.abc import Sequence
 
 from . import __version__
-from .commands import board, many, speed
+from .commands import board, many, speed, teach
 from .commands.words import LOOK, Parser, complain, nearest
 
 COMMANDS = {
@@ -28,6 +28,7 @@ COMMANDS = {
     "accuracy": (many.accuracy, many.ACCURACY_TEXT, many.ACCURACY_EXAMPLES, many.accuracy_options),
     "make-map": (board.make_map, board.MAKE_TEXT, board.MAKE_EXAMPLES, board.make_map_options),
     "bench": (speed.bench, speed.TEXT, speed.EXAMPLES, speed.bench_options),
+    "teach": (teach.teach, teach.TEXT, teach.EXAMPLES, teach.teach_options),
 }
 TEXT = "Map circles, triangles, rectangles and pentagons with a simulated robot and its LiDAR."
 EXAMPLES = """\

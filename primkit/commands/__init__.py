@@ -16,6 +16,7 @@ The rooms, each of which imports only those before it:
 ``board.py``  ``primkit map`` and ``primkit make-map``
 ``many.py``   ``primkit study`` and ``primkit accuracy``
 ``speed.py``  ``primkit bench``
+``teach.py``  ``primkit teach`` and its own commands
 ============  ==========================================
 
 Each command has its TEXT, its EXAMPLES, a function that adds its options to a parser and one that runs it. Nothing

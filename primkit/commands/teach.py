@@ -1,0 +1,138 @@
+"""Teach: ``primkit teach``, a course from its folder to its grades.
+
+In:  one of its own commands, and its options.
+Out: what came out, line by line; files in the course folder. ``teaching`` does the work, and nbgrader most of that.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+from typing import Any
+
+from ..teaching.untrusted import WORDS
+from .words import LOOK, Parser, count, path, say
+
+TEXT = "run a course: release problem sets, grade them, see how the class did"
+EXAMPLES = """\
+examples:
+  primkit teach new-course robotics      a course folder, with all problem sets
+  cd robotics
+  primkit teach check                    is all there, and how is it mended?
+  primkit teach release ps1              release/ps1: for your students
+  primkit teach grade ps1                what lies in submitted/<student>/ps1
+  primkit teach report ps1               how the class did, and nbgrader's export
+
+The course folder is nbgrader's own: all its commands work in it as well, and
+so does its page, formgrader, in Jupyter Lab.
+"""
+
+
+def teach_options(parser: Parser) -> None:
+    """Add the commands of ``primkit teach``."""
+    parser.set_defaults(run=lambda _: parser.print_help())
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND")
+
+    def command(name: str, run: Any, text: str, epilog: str = "", *, ps: bool = False, here: bool = True) -> Any:
+        description = f"{text[0].upper()}{text[1:]}."
+        made = commands.add_parser(name, help=text, description=description, epilog=epilog, **LOOK)
+        made.set_defaults(run=run)
+        if ps:
+            made.add_argument("name", metavar="PS", help="the problem set, a folder in source/")
+        if here:
+            made.option("--course", "DIR", path, Path(), "the course folder", shown="the folder you are in")
+        return made
+
+    new = command("new-course", _new_course, "make a course folder for nbgrader", here=False)
+    new.add_argument("folder", metavar="DIR", type=path, help="a new folder, or an empty one")
+    new.option("--assignments", "DIR", path, None, "where source/ and grader/ lie", shown="those of the project")
+    command("check", _check, "look whether all is there, and say how each fault is mended")
+    command("release", _release, "make the students' version, and their personal maps", ps=True)
+    grade = command("grade", _grade, "grade what was handed in, each submission on its own", WORDS, ps=True)
+    grade.add_argument("--again", action="store_true", help="grade also what has not changed since")
+    grade.add_argument("--student", metavar="ID", action="append", default=[], help="only this one; may be repeated")
+    command("report", _report, "say how the class did; write tables, a figure and nbgrader's export", ps=True)
+    leaks = command("leaks", _leaks, "look for solutions in what students get")
+    leaks.add_argument(
+        "paths", metavar="PATH", nargs="*", type=path, help="notebooks, wheels, folders (default: release)"
+    )
+
+
+def teach(_arguments: argparse.Namespace) -> None:
+    """Stand for the commands below: each of them takes this one's place."""
+
+
+def _course(arguments: argparse.Namespace) -> Any:
+    from ..teaching.course import Course
+
+    return Course(arguments.course or Path()).checked()
+
+
+def _new_course(arguments: argparse.Namespace) -> None:
+    from ..teaching.course import ASSIGNMENTS, new_course
+
+    course = new_course(arguments.folder, arguments.assignments or ASSIGNMENTS)
+    say(f"Made   {course.root}: problem sets {', '.join(course.sets())}")
+    say("Keep   salt.txt: a secret that the personal maps are made from; source/ and grader/: they hold the solutions")
+    say(f"Next   fill in {Path(arguments.folder, 'students.csv')}, go into the folder, and run primkit teach check")
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    from ..teaching.checking import check
+    from ..teaching.course import Course
+
+    findings = check(Course(arguments.course or Path()))
+    for finding in findings:
+        say(str(finding))
+    faults = sum(not finding.fine for finding in findings)
+    say(f"{count(faults, 'fault')} found" if faults else "All is there.")
+    if faults:
+        raise SystemExit(1)
+
+
+def _release(arguments: argparse.Namespace) -> None:
+    from ..teaching.releasing import release
+
+    course = _course(arguments)
+    release(course, course.set(arguments.name), say=say)
+
+
+def _grade(arguments: argparse.Namespace) -> None:
+    from ..teaching.grading import grade
+
+    course = _course(arguments)
+    name = course.set(arguments.name)
+    faults = grade(course, name, again=arguments.again, only=arguments.student, say=say)
+    if faults:
+        say(f"\n{count(len(faults), 'thing')} to look at:")
+        for fault in faults:
+            say(f"  {fault.student}  {fault.cell}  {fault.name}: {fault.says}")
+    say(f"Next   primkit teach report {name}")
+
+
+def _report(arguments: argparse.Namespace) -> None:
+    from ..teaching.reporting import report
+
+    course = _course(arguments)
+    for line in report(course, course.set(arguments.name)):
+        say(line)
+
+
+def _leaks(arguments: argparse.Namespace) -> None:
+    from ..teaching.course import ASSIGNMENTS, Course
+    from ..teaching.leaks import find_leaks, secrets_of
+
+    folder = Course(arguments.course or Path()).root
+    if not (folder / "source").is_dir() and arguments.paths:
+        folder = ASSIGNMENTS  # of the project: to look through a wheel without a course
+    secrets = secrets_of(folder)
+    if not secrets.solutions:
+        raise ValueError(f"there are no solutions in {folder} to look for: run it in the course folder")
+    paths = arguments.paths or [folder / "release"]
+    found = find_leaks(paths, secrets)
+    for leak in found:
+        say(f"LEAK  {leak}")
+    if found:
+        raise SystemExit(1)
+    say(f"No solution in {', '.join(os.fspath(each) for each in paths)}: looked for {len(secrets.solutions)} of them")

@@ -1,0 +1,135 @@
+"""Grading: every submission of a problem set on its own, unattended.
+
+nbgrader's ``autograde`` runs once for each student, in a process of its own with a time limit, so that nothing that one
+submission does can cost another one. What was graded already and has not changed since is passed over.
+
+In:  ``submitted/<student>/<problem set>/``.
+Out: the gradebook, ``autograded/`` and ``feedback/``; ``reports/<problem set>/graded.json`` with all that went wrong,
+     and a log for each student.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from .course import Course
+from .handed_in import Fault, file_faults, tree_hash
+from .running import nbgrader
+
+JOURNAL = "graded.json"
+SECONDS = 1800.0  # for one submission: far more than its cells' own limits come to
+
+
+def grade(
+    course: Course, name: str, *, again: bool = False, only: Sequence[str] = (), say: Callable[[str], None]
+) -> list[Fault]:
+    """Grade all submissions of a problem set, and return what went wrong, one fault for each thing.
+
+    Parameters
+    ----------
+    course : Course
+        The course.
+    name : str
+        The problem set; it must have been released, for the gradebook knows it from there.
+    again : bool
+        Whether to grade submissions again that have not changed.
+    only : sequence of str
+        These students alone; everybody when empty.
+    say : callable
+        Is called with a line for each student, and with those of the summary.
+    """
+    everybody = course.submitted(name)
+    if unknown := sorted(set(only) - set(everybody)):
+        raise ValueError(f"nothing was handed in for {name} by {', '.join(unknown)}")
+    students = list(only) or everybody
+    if not students:
+        raise ValueError(f"nothing was handed in: put notebooks into submitted/<student>/{name}/ in {course.root}")
+    if not (course.root / "release" / name).is_dir():
+        raise ValueError(f"{name} was not released: run `primkit teach release {name}` first, for nbgrader needs it")
+    folders = [course.root / "submitted" / student / name for student in everybody]
+    before, start = tree_hash(*folders), time.monotonic()
+    journal = Journal(course, name)
+    counts = {"graded": 0, "unchanged": 0, "not graded": 0}
+    for number, student in enumerate(students, 1):
+        verdict, line = _one(course, name, student, journal, again)
+        counts[verdict] += 1
+        say(f"{number:4d} of {len(students)}  {student}: {line}")
+    if counts["graded"]:
+        made = nbgrader(course, "generate_feedback", name, "--force", log=course.reports(name) / "log" / "feedback.txt")
+        say("feedback/ is ready" if made.code == 0 else f"feedback/ is not complete: {made.reason}")
+    same = tree_hash(*folders) == before
+    took = time.monotonic() - start
+    told = ", ".join(f"{count} {words}" for words, count in counts.items() if count)
+    say(f"{len(students)} submissions in {took:.0f} s: {told}")
+    say(
+        "submitted/ is as it was"
+        if same
+        else "CHANGED: submitted/ is not as it was; see the journal for whose run it was"
+    )
+    return journal.faults()
+
+
+def _one(course: Course, name: str, student: str, journal: Journal, again: bool) -> tuple[str, str]:
+    """Grade one submission; return how it went, in one of three words and in a line."""
+    folder = course.root / "submitted" / student / name
+    before = tree_hash(folder, course.root / "source" / name, course.root / "grader")
+    if not again and journal.knows(student, before):
+        return "unchanged", "graded before, and not changed since"
+    faults, start = file_faults(course, name, student), time.monotonic()
+    if not faults:
+        words = ("autograde", name, f"--student={student}", "--force")
+        done = nbgrader(course, *words, log=course.reports(name) / "log" / f"{student}.txt", seconds=SECONDS)
+        if done.code != 0:
+            faults.append(Fault(student, "-", "not graded", f"nbgrader could not grade it: {done.reason}"))
+    graded = not faults
+    if graded:
+        faults += list(_noted(course, name, student))
+    if tree_hash(folder, course.root / "source" / name, course.root / "grader") != before:
+        faults.append(
+            Fault(student, "-", "changed files", "while it ran, files in submitted/, source/ or grader/ changed")
+        )
+    journal.write(student, before, graded, faults)
+    told = "; ".join(f"{fault.cell}: {fault.says}" for fault in faults)
+    if not graded:
+        return "not graded", told
+    return "graded", "; ".join(filter(None, [f"graded in {time.monotonic() - start:.0f} s", told]))
+
+
+def _noted(course: Course, name: str, student: str) -> Iterator[Fault]:
+    """Yield what happened while the cells ran."""
+    for notebook in course.notebooks(name):
+        path = course.root / "autograded" / student / name / f"{notebook}.ipynb"
+        noted: Any = json.loads(path.read_text(encoding="utf-8"))["metadata"].get("primkit", {})
+        for fault in noted.get("faults", ()):
+            yield Fault(student, fault["cell"], fault["name"], fault["says"])
+
+
+class Journal:
+    """What has been graded, in a file that is written after every student."""
+
+    def __init__(self, course: Course, name: str) -> None:
+        self.path: Path = course.reports(name) / JOURNAL
+        self.entries: dict[str, Any] = {}
+        if self.path.is_file():
+            self.entries = json.loads(self.path.read_text(encoding="utf-8"))
+
+    def knows(self, student: str, hashed: str) -> bool:
+        """Tell whether these very files were graded."""
+        entry = self.entries.get(student, {})
+        return bool(entry.get("hash") == hashed and entry.get("graded"))
+
+    def write(self, student: str, hashed: str, graded: bool, faults: Sequence[Fault]) -> None:
+        """Write down what came out for a student."""
+        told = [fault.data() for fault in faults]
+        self.entries[student] = {"hash": hashed, "graded": graded, "faults": told}
+        new = self.path.with_suffix(".new")
+        new.write_text(json.dumps(self.entries, indent=1, sort_keys=True), encoding="utf-8")
+        new.replace(self.path)
+
+    def faults(self) -> list[Fault]:
+        """Return all that went wrong, student by student."""
+        return [Fault(**fault) for _, entry in sorted(self.entries.items()) for fault in entry["faults"]]

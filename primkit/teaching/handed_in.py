@@ -1,0 +1,81 @@
+"""Handed in: whether there is a notebook that can be run, and whether it is still what was handed in.
+
+In:  the folder of one submission.
+Out: faults of the files, each in one sentence; and a hash of all that lies there.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from .course import ID, Course
+
+LARGEST = 50  # megabytes of a notebook: more is output that never ended
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One thing that went wrong: whose, where, its short name, and a sentence."""
+
+    student: str
+    cell: str
+    name: str
+    says: str
+
+    def data(self) -> dict[str, str]:
+        """Return it as plain values."""
+        return asdict(self)
+
+
+def file_faults(course: Course, name: str, student: str) -> list[Fault]:
+    """Return why a submission cannot be run; nothing when it can."""
+    folder = course.root / "submitted" / student / name
+    if not ID.fullmatch(student):
+        return [Fault(student, "-", "bad id", "the folder's name must be made of letters, digits and . _ - @ alone")]
+    faults = []
+    for notebook in course.notebooks(name):
+        path = folder / f"{notebook}.ipynb"
+        if not path.is_file():
+            others = ", ".join(sorted(other.name for other in folder.glob("*.ipynb"))) or "no notebook"
+            faults.append((path.name, "missing", f"there is no {path.name}, found {others}"))
+            continue
+        if path.stat().st_size > LARGEST * 2**20:
+            faults.append((path.name, "too large", f"has more than {LARGEST} MB: clear its outputs"))
+        elif wrong := _not_a_notebook(path):
+            faults.append((path.name, "not a notebook", wrong))
+    return [Fault(student, where, short, says) for where, short, says in faults]
+
+
+def _not_a_notebook(path: Path) -> str | None:
+    """Return why a file is no notebook, or None."""
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except UnicodeDecodeError:
+        return "is not text"
+    except (ValueError, RecursionError) as error:
+        return f"is not JSON: {error}"
+    if not isinstance(data, dict) or not isinstance(data.get("cells"), list):
+        return "is JSON, but has no list of cells"
+    if not any("nbgrader" in (cell.get("metadata") or {}) for cell in data["cells"] if isinstance(cell, dict)):
+        return "holds no cell of the problem set: was another notebook handed in, or its cells copied to a new one?"
+    return None
+
+
+def tree_hash(*folders: Path) -> str:
+    """Return a hash of all files in folders: their names and what is in them.
+
+    >>> tree_hash() == tree_hash()
+    True
+    """
+    digest = hashlib.sha256()
+    for folder in folders:
+        for path in sorted(folder.rglob("*")):
+            if {"__pycache__", ".ipynb_checkpoints"} & set(path.parts):
+                continue
+            digest.update(f"{path.relative_to(folder).as_posix()}\0{path.is_file()}\0".encode())
+            if path.is_file():
+                digest.update(hashlib.sha256(path.read_bytes()).digest())
+    return digest.hexdigest()

@@ -1,0 +1,273 @@
+"""Leaks: whether a solution, a hidden test or the salt is in what students get.
+
+In:  the teacher's ``source/`` and ``grader/``, and files: notebooks, wheels and other archives, folders, anything.
+Out: a ``Leak`` for each place, with what was found there.
+
+Code is compared piece by piece, ``PIECE`` tokens long. Spaces, line breaks, comments and the names of variables do not
+count: whoever renames them is found all the same. A text holds a solution when it has a good part of its pieces, for
+single pieces are in everybody's code. What stands openly in the notebooks, such as a function's first line and the
+visible tests, is no secret. Answers of fewer than ``LEAST`` tokens cannot be told from chance.
+"""
+
+from __future__ import annotations
+
+import ast
+import base64
+import binascii
+import builtins
+import html
+import io
+import json
+import keyword
+import re
+import zipfile
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from .course import SALT
+
+PIECE = 16  # tokens, about a line
+LEAST = 24  # a solution of fewer tokens is not looked for
+# Of the pieces. The grader's functions are many and small, and some of their lines are those of any geometry.
+SHARE = {"source": 0.35, "grader": 0.6}
+MARKS = tuple(f"{end} {what}" for what in ("SOLUTION", "HIDDEN TESTS", "MARK SCHEME") for end in ("BEGIN", "END"))
+SKIPPED = ("__pycache__", ".ipynb_checkpoints", ".git")
+PICTURES = ("image/png", "image/jpeg", "application/pdf")
+
+TOKEN = re.compile(r"[^\W\d]\w*|\d[\d_.]*(?:e[-+]?\d+)?|\S", re.IGNORECASE)
+COMMENT = re.compile(r"#[^\n]*")
+KNOWN = {*keyword.kwlist, *dir(builtins), "np", "pk", "self"}
+
+Piece = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Leak:
+    """What was found, and where."""
+
+    path: str
+    place: str
+    what: str
+
+    def __str__(self) -> str:
+        return f"{self.path}, {self.place}: {self.what}"
+
+
+@dataclass
+class Secrets:
+    """What must not be found."""
+
+    solutions: dict[tuple[str, str], set[Piece]] = field(default_factory=dict)  # by folder, and place in it
+    words: dict[str, str] = field(default_factory=dict)
+
+    def add(self, folder: str, where: str, code: str) -> None:
+        """Add a solution; one that is too short is left out."""
+        if len(_tokens(code)) >= LEAST:
+            self.solutions[folder, where] = self.solutions.get((folder, where), set()) | set(pieces(code))
+
+
+# --- what is secret -----------------------------------------------------------------------------------------
+
+
+def secrets_of(folder: Path) -> Secrets:
+    """Return the secrets of a folder with ``source/`` and ``grader/``, and perhaps a salt."""
+    secrets, public = Secrets(), set[Piece]()
+    for path in sorted((folder / "source").rglob("*.ipynb")):
+        for cell in _cells(path):
+            shown, hidden = _split(_text(cell.get("source", "")))
+            public.update(pieces(shown))
+            for part in hidden:
+                name = cell.get("metadata", {}).get("nbgrader", {}).get("grade_id", "a cell")
+                secrets.add("source", f"the solution of {name} in {path.name}", part)
+    for path in sorted((folder / "grader").rglob("*.py")):
+        for function in _functions(path.read_text(encoding="utf-8")):
+            body = "\n".join(ast.unparse(line) for line in _body(function))
+            secrets.add("grader", f"{function.name} in grader/{path.name}", body)
+    secrets.solutions = {where: held - public for where, held in secrets.solutions.items() if held - public}
+    if (folder / SALT).is_file():
+        secrets.words[(folder / SALT).read_text(encoding="utf-8").strip()] = "the salt"
+    return secrets
+
+
+def _split(source: str) -> tuple[str, list[str]]:
+    """Return what of a cell students see, and what they do not."""
+    shown: list[str] = []
+    hidden: list[list[str]] = []
+    inside = False
+    for line in source.splitlines():
+        if any(mark in line for mark in MARKS):
+            inside = "BEGIN" in line
+            hidden += [[]] * inside
+        elif inside:
+            hidden[-1] = [*hidden[-1], line]
+        else:
+            shown.append(line)
+    return "\n".join(shown), ["\n".join(part) for part in hidden]
+
+
+def _functions(source: str) -> Iterator[ast.FunctionDef]:
+    return (node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.FunctionDef))
+
+
+def _body(function: ast.FunctionDef) -> Sequence[ast.stmt]:
+    return function.body[1:] if ast.get_docstring(function) else function.body
+
+
+# --- pieces -------------------------------------------------------------------------------------------------
+
+
+def pieces(text: str) -> Iterator[Piece]:
+    """Yield the pieces of a text: its tokens, variables by the order in which they first appear.
+
+    >>> list(pieces("a = b + 2  # half")) == list(pieces("x = y+2"))
+    True
+    """
+    seen = set[Piece]()
+    for version in _versions(text):
+        tokens = _tokens(version)
+        for start in range(len(tokens) - PIECE + 1):
+            piece = _renamed(tokens[start : start + PIECE])
+            if piece not in seen:
+                seen.add(piece)
+                yield piece
+
+
+def _versions(text: str) -> Iterator[str]:
+    """Yield a text as it stands, and as Python would write it, if it is Python."""
+    yield text
+    lines = text.splitlines()
+    margin = min((len(line) - len(line.lstrip()) for line in lines if line.strip()), default=0)
+    inner = "\n".join(line[margin:] for line in lines)
+    try:
+        yield ast.unparse(ast.parse(inner))
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return
+
+
+def _tokens(text: str) -> list[str]:
+    return TOKEN.findall(COMMENT.sub("", text))
+
+
+def _renamed(tokens: Sequence[str]) -> Piece:
+    """Return tokens with numbers in the place of variables; attributes and known names stay."""
+    names: dict[str, str] = {}
+    return tuple(
+        token
+        if not (token[0].isalpha() or token[0] == "_") or token in KNOWN or (n and tokens[n - 1] == ".")
+        else names.setdefault(token, str(len(names)))
+        for n, token in enumerate(tokens)
+    )
+
+
+# --- where it is looked for ---------------------------------------------------------------------------------
+
+
+def find_leaks(paths: Iterable[Path], secrets: Secrets) -> list[Leak]:
+    """Return what of the secrets stands in files, or in the files of folders and archives."""
+    shapes = {_shape(piece) for held in secrets.solutions.values() for piece in held}
+    leaks = []
+    for path in paths:
+        if not path.exists():
+            raise ValueError(f"there is no {path} to look for leaks in")
+        for name, place, text in _texts(path):
+            leaks += [Leak(name, place, what) for what in _found(text, secrets, shapes)]
+    return leaks
+
+
+def _found(text: str, secrets: Secrets, shapes: set[Piece]) -> Iterator[str]:
+    """Yield what stands in a text."""
+    yield from [f"the marker {mark}" for mark in MARKS if mark in text][:1]
+    yield from (f"{what} stands there" for word, what in secrets.words.items() if word in text)
+    held = set[Piece]()
+    for version in _versions(text):
+        tokens = _tokens(version)
+        shape = _shape(tokens)
+        for start in range(len(tokens) - PIECE + 1):
+            if shape[start : start + PIECE] in shapes:  # most are told by this alone
+                held.add(_renamed(tokens[start : start + PIECE]))
+    for (folder, where), solution in secrets.solutions.items():
+        share = len(solution & held) / len(solution)
+        if share >= SHARE[folder]:
+            yield f"{where}, {100 * share:.0f} % of it"
+
+
+def _shape(tokens: Sequence[str]) -> Piece:
+    """Return tokens with one sign for all names and numbers: quick to compare."""
+    return tuple("v" if token[0].isalnum() or token[0] == "_" else token for token in tokens)
+
+
+def _texts(path: Path) -> Iterator[tuple[str, str, str]]:
+    """Yield (file, place, text) of all texts in a file or folder."""
+    if path.is_dir():
+        for inner in sorted(path.rglob("*")):
+            if inner.is_file() and not set(inner.parts) & set(SKIPPED):
+                yield from _of_file(inner.as_posix(), inner.read_bytes())
+    else:
+        yield from _of_file(path.as_posix(), path.read_bytes())
+
+
+def _of_file(name: str, data: bytes) -> Iterator[tuple[str, str, str]]:
+    if zipfile.is_zipfile(io.BytesIO(data)):
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            for member in archive.namelist():
+                yield from _of_file(f"{name}/{member}", archive.read(member))
+        return
+    text = data.decode("utf-8", "replace")  # in a binary file, words can still be found
+    if name.endswith(".ipynb"):
+        try:
+            yield from ((name, place, part) for place, part in _of_notebook(json.loads(text)))
+            return
+        except (ValueError, AttributeError, TypeError):
+            pass  # no notebook: as text, then
+    yield name, "text", html.unescape(text) if name.endswith((".html", ".svg")) else text
+
+
+def _of_notebook(nb: Any) -> Iterator[tuple[str, str]]:
+    """Yield the places of a notebook and their texts."""
+    yield from _strings("the notebook's metadata", nb.get("metadata", {}))
+    for number, cell in enumerate(nb["cells"], 1):
+        yield f"cell {number}", _text(cell.get("source", ""))
+        yield from _strings(f"cell {number}, metadata", cell.get("metadata", {}))
+        for bundle in (cell.get("attachments") or {}).values():
+            yield from ((f"cell {number}, attachment", _decoded(data)) for data in bundle.values())
+        for output in cell.get("outputs") or ():
+            for kind, data in (output.get("data") or {}).items():
+                if kind not in PICTURES:
+                    text = html.unescape(_text(data)) if isinstance(data, (str, list)) else json.dumps(data)
+                    yield f"cell {number}, output", text
+            yield from _strings(f"cell {number}, output", {k: v for k, v in output.items() if k != "data"})
+
+
+def _strings(place: str, value: Any) -> Iterator[tuple[str, str]]:
+    """Yield every text in nested values; a list of texts is also read as lines."""
+    if isinstance(value, str):
+        yield place, value
+    elif isinstance(value, dict):
+        for name, inner in value.items():
+            yield from _strings(place, name)
+            yield from _strings(place, inner)
+    elif isinstance(value, list):
+        if value and all(isinstance(line, str) for line in value):
+            yield place, "\n".join(line.rstrip("\n") for line in value)
+        else:
+            for inner in value:
+                yield from _strings(place, inner)
+
+
+def _decoded(data: Any) -> str:
+    text = _text(data)
+    try:
+        return base64.b64decode(text, validate=True).decode("utf-8", "replace")
+    except (binascii.Error, ValueError):
+        return text
+
+
+def _text(source: Any) -> str:
+    return "".join(source) if isinstance(source, list) else str(source)
+
+
+def _cells(path: Path) -> list[dict[str, Any]]:
+    cells: list[dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))["cells"]
+    return cells

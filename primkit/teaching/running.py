@@ -1,0 +1,68 @@
+"""Running: nbgrader's own commands, each in a process of its own.
+
+In:  a course, the words of a command such as ``generate_assignment ps1``, and where its log goes.
+Out: whether it succeeded, and its log.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import sysconfig
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from .course import Course
+
+
+@dataclass(frozen=True)
+class Done:
+    """How a command ended."""
+
+    code: int
+    log: str
+
+    @property
+    def reason(self) -> str:
+        """The last line that names an error."""
+        lines = [line.strip() for line in self.log.splitlines() if line.strip()]
+        errors = [line for line in lines if "Error" in line.split(":")[0] or "| ERROR]" in line]
+        named = [line for line in errors if "ERROR]" not in line] or errors or lines or [f"exit code {self.code}"]
+        return named[-1]
+
+
+def nbgrader(course: Course, *words: str, log: Path | None = None, seconds: float | None = None) -> Done:
+    """Run a command of nbgrader's in the course folder."""
+    command = [sys.executable, "-m", "nbgrader", *words]
+    try:
+        done = subprocess.run(
+            command,
+            cwd=course.root,
+            env=_environment(course),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            encoding="utf-8",
+            errors="replace",
+            timeout=seconds,
+            check=False,
+        )
+        result = Done(done.returncode, done.stdout)
+    except subprocess.TimeoutExpired as stop:
+        told: Any = stop.stdout or b""  # bytes or text: it depends on the system
+        text = told.decode("utf-8", "replace") if isinstance(told, bytes) else told
+        result = Done(1, f"{text}\nTimeoutError: nbgrader was stopped after {seconds or 0:g} s")
+    if log is not None:
+        log.parent.mkdir(parents=True, exist_ok=True)
+        log.write_text(f"$ nbgrader {' '.join(words)}\n{result.log}", encoding="utf-8")
+    return result
+
+
+def _environment(course: Course) -> dict[str, str]:
+    """Return an environment that finds ``grader``, and alembic, which nbgrader calls by its name."""
+    first = {"PYTHONPATH": str(course.root), "PATH": sysconfig.get_path("scripts")}
+    joined = {name: os.pathsep.join(filter(None, [value, os.environ.get(name)])) for name, value in first.items()}
+    return {**os.environ, **joined, "PYTHONUTF8": "1"}
