@@ -49,7 +49,7 @@ _STORY = {
         *("plot_world", "plot_scan", "plot_points", "plot_clusters", "plot_found"),
         *("plot_story", "plot_drive", "save_figure"),
     ),
-    "widgets": ("drive_scene",),
+    "widgets": ("drive_scene", "replay"),
 }
 # Rooms that are used by their own name: pk.widgets.rays(), pk.checks.ray_segment(mine).
 _ROOMS = ("widgets", "checks")
@@ -114,5 +114,5 @@ if TYPE_CHECKING:
     from .shapes import Circle, Polygon
     from .steps import Steps
     from .study import run_study, scripted_route, tables
-    from .widgets import drive_scene
+    from .widgets import drive_scene, replay
     from .world import World, random_world

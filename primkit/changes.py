@@ -128,6 +128,33 @@ class MovingGrid(Grid):
             self._keep(~given_up)
             self._keep(~self._shaken())
 
+    def give_up(self, which: ArrayLike) -> None:
+        """Give up cells for a reason of one's own, such as a shape that stands around them now.
+
+        Parameters
+        ----------
+        which : array_like of bool, shape (N,)
+            Which of ``cells``.
+
+        Raises
+        ------
+        ValueError
+            If there is not one truth value for each cell; the grid then stays as it was.
+
+        Examples
+        --------
+        >>> grid = MovingGrid()
+        >>> grid.give_up([True])
+        Traceback (most recent call last):
+            ...
+        ValueError: which must hold True or False for each of the 0 cells, got shape (1,)
+        """
+        given_up = np.asarray(which)
+        if given_up.shape != (len(self),) or given_up.dtype != bool:
+            rule = f"which must hold True or False for each of the {len(self)} cells"
+            raise ValueError(f"{rule}, got shape {given_up.shape}")
+        self._keep(~given_up)
+
     def _keep(self, which: Bools) -> None:
         self._cells = self._cells[which]
         self._keys = self._cells["key"]

@@ -1,22 +1,29 @@
 """The live scene without a browser: what a drive by hand knows, what it sends to the page, and that it stays quick."""
 
+import subprocess
+import sys
 import threading
 import time
-import tracemalloc
 from concurrent.futures import Executor, Future
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import primkit as pk
+from primkit.changes import MovingGrid
 from primkit.measure import Detection
-from primkit.robot import AXLE, FASTEST, WHEEL
+from primkit.robot import AXLE, FASTEST, WHEEL, clearance
 from primkit.widgets.driving import DriveState
 from primkit.widgets.finder import beside
 from primkit.widgets.keys import HELD, STANDING, wheels_for
+from primkit.widgets.moving import NEAREST, left_within, with_one_moved
+from primkit.widgets.replay import Film
 from primkit.widgets.scene import Scene
 from primkit.widgets.sketch import drawn
 
+ROOT = Path(__file__).resolve().parent.parent
+MOST_MEMORY = 1.1  # times what the first half minute took
 STEP = 0.05  # s of processor time, which 95 of 100 steps do not exceed: half of the tenth of a second that there is
 TURN = 2 * WHEEL * 0.3 * FASTEST / AXLE  # rad/s
 
@@ -155,18 +162,48 @@ def test_a_step_leaves_half_of_the_time_free(driven):
     assert np.percentile(taken, 95) <= STEP
 
 
-def test_the_memory_stays_flat(world):
-    """From the third to the fifth of five stretches; the first ones see the board for the first time."""
-    state, held = DriveState(world), []
-    wander(state, 300)
-    tracemalloc.start()
-    try:
-        for _ in range(3):
-            wander(state, 150)
-            held.append(tracemalloc.get_traced_memory()[0])
-    finally:
-        tracemalloc.stop()
-    assert held[-1] - held[0] < 300_000  # bytes; the scans alone would be 250,000, and 2,000,000 with all they bring
+LONG_DRIVE = """
+import resource, sys, time
+import numpy as np
+import primkit as pk
+from primkit.widgets.driving import DriveState
+from primkit.widgets.finder import beside
+from primkit.widgets.keys import wheels_for
+from tests.test_scene import wandering
+
+noise, counts = float(sys.argv[1]), [int(word) for word in sys.argv[2:]]
+state = DriveState(pk.random_world(4, rng=7), pk.Lidar(noise_std=noise), executor=beside())
+hand, stopped, taken = wandering(counts[-1]), None, []
+for number in range(1, counts[-1] + 1):
+    wheels = wheels_for(hand.send(stopped))
+    begun = time.perf_counter(), time.thread_time()
+    state.step(wheels)
+    taken.append((time.perf_counter() - begun[0], time.thread_time() - begun[1]))
+    stopped = state.stopped
+    if number in counts:
+        print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, *np.percentile(taken, 95, axis=0), len(state.grid))
+state.close()
+"""
+
+
+def long_drive(noise, *counts):
+    """Drive in a process of its own, at full speed; after so many steps return its peak of memory, the longest of 95 %
+
+    of its steps by the clock and by the processor, in seconds, and how many cells there are.
+    """
+    command = [sys.executable, "-c", LONG_DRIVE, str(noise), *map(str, counts)]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=True)
+    return [tuple(map(float, line.split())) for line in done.stdout.splitlines()]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no resource module")
+@pytest.mark.parametrize("noise", [0.0, 0.002], ids=["exact", "noise"])
+def test_memory_stays_flat_and_no_step_waits_while_the_map_grows(noise):
+    """Five times as long, half as many cells again, and no more memory, while looks go on beside the drive."""
+    (before, *_, few), (after, _, busy, many) = long_drive(noise, 300, 1500)
+    assert many > 1.3 * few
+    assert after <= MOST_MEMORY * before
+    assert busy <= STEP
 
 
 def test_the_automatic_movements_are_the_library_s(world):
@@ -308,7 +345,7 @@ def test_who_drives_hears_of_a_look_that_failed_and_drives_on(scene, monkeypatch
 def test_the_page_asks_on_until_the_last_look_is_done(world):
     scene = Scene(DriveState(world, executor=(later := Later())))
     scene.sent = []
-    scene.send = lambda content, buffers=None: scene.sent.append(content)
+    scene.send = lambda content, _=None: scene.sent.append(content)
     for _ in range(9):
         scene.answer({"do": "step", "held": ["forward"]})
     assert "shapes 9 scans old" in scene.sent[-2]["score"]
@@ -320,6 +357,190 @@ def test_the_page_asks_on_until_the_last_look_is_done(world):
     assert not scene.sent[-1]["busy"]
     assert "old" not in scene.sent[-2]["score"]
     scene.close()
+
+
+# Things that are moved while the robot drives.
+
+
+def look_round(state, shape, n):
+    """Carry the robot around a shape, and let it scan from n places with room for it."""
+    bearings = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    ring = np.column_stack([np.cos(bearings), np.sin(bearings)])
+    for reach in (0.12, 0.16, 0.2, 0.25, 0.3):
+        places = shape.centroid + reach * ring
+        good = clearance(state.world, places) > 0.001
+        if good.sum() >= n:
+            break
+    for x, y in places[good][np.linspace(0, good.sum() - 1, n).round().astype(int)]:
+        state.pose = np.array([x, y, 0.0])
+        state.move()
+
+
+def ghosts(state, old):
+    """Return how many cells are left near where a shape was, and on none that is there."""
+    points = state.grid.points()
+    apart = np.min([np.abs(shape.signed_distance(points)) for shape in state.world.shapes], axis=0)
+    return int(((apart > 0.012) & (np.abs(old.signed_distance(points)) < 0.012)).sum())
+
+
+def the_moved(before, after):
+    """Return the shape that stands elsewhere, as it stood, and as it stands."""
+    (pair,) = [(old, new) for old, new in zip(before.shapes, after.shapes, strict=True) if old != new]
+    return pair
+
+
+@pytest.mark.parametrize("seed", [1, 2, 5, 7])
+def test_a_moved_shape_leaves_no_ghost_and_is_found_again(seed):
+    """Within twenty scans that look at it."""
+    state = DriveState(pk.random_world(3, rng=seed), moving=True, rng=seed)
+    for shape in state.world.shapes:
+        look_round(state, shape, 30)
+    state.finish()
+    assert state.score == 1.0
+    before = state.world
+    assert state.move_something()
+    old, new = the_moved(before, state.world)
+    assert ghosts(state, old) > 50, "nothing is known of it yet"
+    look_round(state, new, 20)
+    state.finish()
+    state.step()
+    assert ghosts(state, old) == 0
+    assert state.score == 1.0
+
+
+def test_what_lies_within_a_shape_that_was_put_around_it_is_given_up():
+    """No beam will ever come there: only the shape itself tells that nothing can be left."""
+    small, large, grid = pk.Circle((0, 0), 0.04), pk.Circle((0.02, 0), 0.12), MovingGrid()
+    grid.add(pk.scan(pk.World([small]), [(0.2, 0, 0)] * 2))
+    bearings = np.arange(0, 6.28, 0.1)
+    around = np.column_stack([0.02 + 0.3 * np.cos(bearings), 0.3 * np.sin(bearings), 0 * bearings])
+    inner = grid.points()
+    grid.add(pk.scan(pk.World([large]), around))
+    points = grid.points()
+    ring = points[np.abs(large.signed_distance(points)) < 0.005]
+    within = left_within(grid, [Detection(large, ring, 0.0)])
+    assert within.sum() == len(inner)
+    assert (large.signed_distance(points[within]) < 0).all()
+    half = ring[ring[:, 0] < 0.0]
+    assert not left_within(grid, [Detection(large, half, 0.0)]).any(), "too little of it was seen to be sure"
+    grid.give_up(within)
+    assert len(grid) == len(points) - len(inner)
+
+
+def test_the_page_hears_which_cells_are_gone(world):
+    scene = Scene(DriveState(world, moving=True))
+    told, cells = [], set(map(tuple, scene.state.grid.cells.tolist()))
+    scene.send = lambda content, _=None: told.append(content)
+    for number, held in enumerate(wandering(150)):
+        if number == 60:
+            scene.answer({"do": "move"})
+        scene.answer({"do": "step", "held": held})
+    for message in told:
+        cells -= {tuple(cell) for cell in message.get("gone", [])}
+        cells |= {tuple(cell) for cell in message.get("cells", [])}
+    assert any(message.get("gone") for message in told)
+    assert any((message.get("say") or "").startswith("Somebody has moved a shape") for message in told)
+    assert cells == set(map(tuple, scene.state.grid.cells.tolist()))
+    scene.close()
+
+
+def test_back_at_the_start_things_stand_where_they_stood(world):
+    state = DriveState(world, moving=True)
+    assert state.move_something()
+    assert state.world != world
+    state.undo()
+    assert state.world == world
+    assert (state.n_scans, state.score) == (1, DriveState(world, moving=True).score)
+
+
+def test_what_is_moved_keeps_clear_of_all(world):
+    rng, pose = np.random.default_rng(0), np.array([0.0, 0.0, 0.0])
+    for _ in range(20):
+        after = with_one_moved(world, pose, rng)
+        old, new = the_moved(world, after)
+        assert np.hypot(*(new.centroid - old.centroid)) >= NEAREST - 1e-9
+        assert after.least_gap() >= 0.05
+        assert clearance(after, pose[None, :2])[0] > 0
+        world = after
+    assert with_one_moved(pk.World(), pose, rng) is None
+    full = pk.World([pk.Circle((0.25, 0), 0.24), pk.Circle((-0.25, 0), 0.24)])
+    assert with_one_moved(full, np.array([0, 0.4, 0]), rng) is None
+
+
+@pytest.mark.parametrize(
+    ("moving", "other", "message"),
+    [
+        (False, pk.World(), r"things must be allowed to move, as in drive_scene\(world, moving=True\)"),
+        (True, pk.World(size=2.0), "the board must stay 1 m wide, got 2 m"),
+        (True, pk.World([pk.Circle((0, 0), 0.1)]), "the robot must stand clear of shapes"),
+        (True, 3, "world must be a World, got int"),
+    ],
+)
+def test_things_are_not_moved_to_where_they_cannot_be(moving, other, message):
+    state = DriveState(pk.World([pk.Circle((0.3, 0), 0.05)]), moving=moving)
+    with pytest.raises(ValueError, match=message):
+        state.rearrange(other)
+
+
+# A drive that was recorded, as a film.
+
+
+@pytest.fixture(scope="module")
+def recorded(world):
+    poses = pk.drive(world, [wheels_for(["forward"])] * 15 + [wheels_for(["left"])] * 10)
+    return pk.Drive(pk.scan(world, poses), np.zeros((len(poses), 2)))
+
+
+def test_a_film_knows_after_each_scan_what_the_map_knew(recorded):
+    film, grid = Film(recorded), pk.Grid()
+    for number, known in enumerate(film.known):
+        grid.add(recorded.scans[number : number + 1])
+        assert set(map(tuple, film.cells[:known])) == set(map(tuple, grid.cells))
+    last = pk.find_shapes(grid.points(), rng=0)
+    assert [one.kind for one in film.looks[-1].found] == [one.kind for one in last]
+    assert [look.scan for look in film.looks] == sorted({look.scan for look in film.looks})
+    assert film.looks[-1].scan == np.flatnonzero(np.diff(film.known, prepend=0))[-1]
+
+
+def test_a_film_is_sent_at_once_to_a_page_that_says_hello(world, recorded):
+    player, sent = pk.replay(recorded, world), []
+    player.send = lambda content, buffers=None: sent.append((content, buffers))
+    player.answer({"do": "hello"})
+    ((told, (ranges, cells)),) = sent
+    ranges = np.frombuffer(ranges, "<i2").reshape(len(recorded), -1)
+    hits = recorded.scans.hits
+    np.testing.assert_allclose(ranges[hits] / 10_000, recorded.scans.ranges[hits], atol=5.1e-5)
+    assert (ranges[~hits] == -1).all()
+    np.testing.assert_array_equal(np.frombuffer(cells, "<i4").reshape(-1, 2), player.film.cells)
+    assert len(told["poses"]) == len(told["known"]) == len(recorded)
+    assert len(told["truths"]) == len(world.shapes)
+    assert told["looks"][-1]["score"].endswith(
+        f"{pk.evaluate(player.film.looks[-1].found, world).weighted_accuracy:.2f}"
+    )
+    player.close()
+
+
+def test_without_the_truth_a_film_tells_none_of_it(recorded):
+    player = pk.replay(recorded)
+    assert player.told()["truths"] == []
+    assert "score" not in player.told()["looks"][-1]["score"]
+    player.close()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (([],), "drive must be a Drive, such as load_drive"),
+        ((None, 3), "world must be a World"),
+        ((None, None, "a"), "rng must be a seed"),
+        (("none",), "a drive must have scans to be played, got none"),
+    ],
+)
+def test_what_is_no_drive_is_not_played(recorded, arguments, message):
+    drive, *others = arguments
+    drive = {None: recorded, "none": pk.Drive(recorded.scans[:0], [])}.get(drive, drive) if drive != [] else drive
+    with pytest.raises(ValueError, match=message):
+        pk.replay(drive, *others[:1], **({"rng": others[1]} if others[1:] else {}))
 
 
 # The journal.

@@ -30,6 +30,7 @@ The rooms, each of which imports only those before it:
 ``driving.py``   the robot under somebody's hand, and what it knows so far
 ``sketch.py``    what the page needs to know to draw it
 ``scene.py``     ``drive_scene``: drive it with the keys, and watch its map grow
+``replay.py``    ``replay``: a recorded drive as a film
 ===============  ==================================================
 """
 
@@ -41,6 +42,7 @@ from .edges import edges
 from .groups import groups
 from .naming import naming
 from .rays import rays
+from .replay import Replay, replay
 from .scene import Scene, drive_scene
 from .scoring import scoring
 from .slider import Choice, Explorer, Slider, explore
@@ -59,6 +61,8 @@ __all__ = [
     "scoring",
     "drive_scene",
     "Scene",
+    "replay",
+    "Replay",
     "explore",
     "Explorer",
     "Slider",

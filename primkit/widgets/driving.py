@@ -42,9 +42,9 @@ from ..lidar import Lidar, Scans, scan
 from ..measure import Detection
 from ..robot import advance, start_pose
 from ..world import World
-from .finder import AtOnce, Finder
+from .finder import MOST, AtOnce, Finder, thinned
 from .keys import STANDING
-from .moving import with_one_moved
+from .moving import left_within, with_one_moved
 from .runs import Comparison, Run, by_exploring, from_waypoints
 
 Floats = NDArray[np.float64]
@@ -134,6 +134,7 @@ class DriveState:
         self.trouble = ""  # why the journal could not be written, in one sentence
         self.world, self.pose, self.n_scans, self.stopped = self._start_world, start_pose(self._start_world), 0, False
         self.grid: Grid = MovingGrid(lidar=self.lidar) if self.moving else Grid()
+        self._cells = self.grid.cells  # as they were told last
         self.found = list[Detection]()
         self.n_scans_found = 0  # how many scans the shapes were found in
         self.seen_map = SeenMap(self.world.size)
@@ -188,14 +189,18 @@ class DriveState:
             done = self._fetch() or done
         return done
 
-    def _begin_look(self) -> None:
+    def _begin_look(self, most: int = MOST) -> None:
+        """Have the map looked at, or so many of its cells."""
+        cells = self.grid.cells
         self._n_news = 0
-        self._finder.look(self.grid.points(), self.n_scans)
+        self._finder.look(self.grid.to_points(cells[thinned(cells, most)]), self.n_scans)
 
     def _fetch(self, wait: bool = False) -> bool:
         news = self._finder.news(wait=wait)
         if news is not None:
             self.found, self.n_scans_found = news.found, news.n_scans
+            if isinstance(self.grid, MovingGrid):
+                self.grid.give_up(left_within(self.grid, self.found))  # the next scan tells what is gone
         return news is not None
 
     def finish(self) -> None:
@@ -207,7 +212,7 @@ class DriveState:
             Whatever ended the look, if it could not be finished.
         """
         self._finder.forget()
-        self._begin_look()
+        self._begin_look(most=len(self.grid))
         self._fetch(wait=True)
 
     @property
@@ -220,9 +225,9 @@ class DriveState:
         self.scan: Scans = scan(self.world, self.pose, self.lidar, rng=self._rng)
         self.n_scans += 1
         self.seen_map.add(self.scan, self.lidar.range_min, self.lidar.range_max)
-        before = self.grid.cells
+        before = self._cells
         self.grid.add(self.scan)
-        now = self.grid.cells
+        self._cells = now = self.grid.cells
         new, gone = _only_in(now, before), _only_in(before, now)
         self._n_news += len(new) + len(gone)
         return new, gone

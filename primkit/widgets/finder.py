@@ -12,7 +12,8 @@ Out: ``Look``: the shapes of the last look that is done, and how many scans it k
 
 There is one look at a time, and who asks for another while it lasts is not heard: the next look takes the points that
 are newest then. ``beside()`` looks in a thread of its own; ``AtOnce()`` in the caller's, so that the same drive gives
-the same shapes on any computer.
+the same shapes on any computer. Of very many cells only a part is looked at (``thinned``), so that neither the time nor
+the memory of a look grows with the drive.
 """
 
 from __future__ import annotations
@@ -29,7 +30,15 @@ from ..measure import Detection
 from ..pipeline import Memory, find_shapes
 
 Floats = NDArray[np.float64]
-P, T = ParamSpec("P"), TypeVar("T")
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+P = ParamSpec("P")
+T = TypeVar("T")
+
+MOST = (
+    6000  # cells: a look at these takes a quarter of a second, and more are only there when noise has blurred the map
+)
+MIXERS = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F)  # odd and large, so that neighbours have nothing in common
 
 
 class AtOnce(Executor):
@@ -64,6 +73,29 @@ class Look:
 
     found: list[Detection]
     n_scans: int
+
+
+def thinned(cells: Ints, most: int = MOST) -> Bools:
+    """Tell which cells are looked at when there are too many: a half, a quarter, ..., as if by chance, shape (N,).
+
+    A cell is chosen or not whatever else there is: as long as the share stays the same, a map that grows stays a map
+    that grows, and the last look can be built upon.
+
+    Examples
+    --------
+    >>> cells = np.stack(np.meshgrid(np.arange(100), np.arange(100)), axis=-1).reshape(-1, 2)
+    >>> [int(thinned(cells[:n], 4000).sum()) for n in (4000, 10_000)]
+    [4000, 2515]
+    """
+    mixed = cells.astype(np.uint64) @ np.array(MIXERS, dtype=np.uint64)
+    mixed ^= mixed >> np.uint64(29)
+    mixed = (mixed * np.uint64(MIXERS[0])) >> np.uint64(40)
+    chosen: Bools = np.ones(len(cells), dtype=bool)
+    share = 1
+    while np.count_nonzero(chosen) > most:
+        share *= 2
+        chosen = mixed % np.uint64(share) == 0
+    return chosen
 
 
 class Finder:

@@ -13,8 +13,8 @@ The page (``scene.js``, ``board.js``) has the clock: while a key is held it asks
 time, and the kernel answers each with what is new. So nothing runs on when nobody drives, and a slow computer drives
 slowly instead of lagging behind. Shapes are looked for beside that, in a thread: with much noise a look takes longer
 than a step, and then the outlines are some scans old, which the page says. When all keys are let go, it asks on until
-the last look is done. Nothing is drawn that the robot has not measured, unless the truth is switched on; the score knows
-the truth, too.
+the last look is done. Nothing is drawn that the robot has not measured, unless the truth is switched on; the score
+knows the truth, too.
 """
 
 from __future__ import annotations
