@@ -27,12 +27,14 @@ The rooms, each of which imports only those before it:
 ``arcs.py``     lesson 05: a circle through many points, and its RMS
 ``naming.py``   lesson 06: corners, sides and centre, a fair choice
 ``scoring.py``  lesson 07: one-to-one pairs, the weighted accuracy
+``driving.py``  lesson 08: where two wheels take the robot, what was seen
 ==============  =====================================================
 """
 
 from .answer import Answer, Check, Fault
 from .arcs import circle_rms, fit_circle
 from .cells import occupy, to_cells
+from .driving import drive_step, share_seen
 from .edges import fit_line, inliers_of, line_through, ransac_line
 from .groups import assign_points, silhouette, update_centers
 from .naming import fair_choice, meet, sides_and_centroid
@@ -59,6 +61,8 @@ TASKS = (
     fair_choice,
     match_shapes,
     weighted_accuracy,
+    drive_step,
+    share_seen,
 )
 
 __all__ = [
@@ -80,6 +84,8 @@ __all__ = [
     "fair_choice",
     "match_shapes",
     "weighted_accuracy",
+    "drive_step",
+    "share_seen",
     "Answer",
     "Check",
     "Fault",

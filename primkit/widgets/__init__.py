@@ -23,6 +23,7 @@ The rooms, each of which imports only those before it:
 ``arcs.py``      lesson 05: the circles that five ways see in an arc
 ``naming.py``    lesson 06: candidates, what each costs, the chosen one
 ``scoring.py``   lesson 07: tolerance, weights, one-sided or two-sided
+``wheels.py``    lesson 08: the arc that two wheels make, and straight pieces
 ``keys.py``      what the keys that drive the robot mean for its wheels
 ``finder.py``    looks for shapes beside the drive
 ``moving.py``    a shape that is moved meanwhile
@@ -46,9 +47,10 @@ from .replay import Replay, replay
 from .scene import Scene, drive_scene
 from .scoring import scoring
 from .slider import Choice, Explorer, Slider, explore
+from .wheels import wheels
 
 # The lessons' sliders, in the order of the lessons: tests move each of them to all corners of its box.
-SLIDERS = (boards, rays, cells, groups, edges, arcs, naming, scoring)
+SLIDERS = (boards, rays, cells, groups, edges, arcs, naming, scoring, wheels)
 
 __all__ = [
     "boards",
@@ -59,6 +61,7 @@ __all__ = [
     "arcs",
     "naming",
     "scoring",
+    "wheels",
     "drive_scene",
     "Scene",
     "replay",

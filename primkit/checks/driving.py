@@ -1,0 +1,278 @@
+"""Driving: where two wheels take the robot, and how much of an outline was seen; the checks of lesson 08.
+
+In:  the student's ``drive_step(pose, left, right, seconds)`` and ``share_seen(outline, points, reach)``.
+Out: answers. The first returns the pose after that time (x [m], y [m], heading [rad]); the second a share from 0 to 1.
+
+A heading is right up to whole turns.
+
+>>> drive_step(lambda pose, left, right, seconds: ...)
+○ not attempted: drive_step still returns `...`.
+>>> drive_step.reference((0.0, 0.0, 0.0), 2.0, 2.0, 1.0)
+array([0.041, 0.   , 0.   ])
+>>> share_seen.reference(np.array([(0.0, 0.0), (0.1, 0.0)]), np.array([(0.0, 0.005)]), 0.012)
+0.5
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..robot import AXLE, FASTEST, WHEEL, moved
+from . import judges
+from .answer import Case, Check, Fault
+
+Floats = NDArray[np.float64]
+Pose = tuple[float, float, float]
+
+RANDOM_CASES = 200
+EXACT = 1e-9  # m and rad
+EDGE = 1e-4  # m: outlines' places whose nearest point is as far as the reach, to this, are left out
+
+_as_array = judges.array(tolerance=EXACT)
+
+
+def pose_after(pose: Pose, left: float, right: float, seconds: float) -> Floats:
+    """Return the pose after the wheels have turned for a while, shape (3,)."""
+    return moved(pose, (left, right), seconds)
+
+
+def _same_pose(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
+    """Judge a pose: metres, and a heading up to whole turns."""
+    try:
+        values = np.asarray(got, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        return _as_array(got, expected, args)
+    if values.shape != (3,) or not np.isfinite(values).all():
+        return _as_array(got, expected, args)
+    turns = np.round((values[2] - expected[2]) / (2 * np.pi))
+    return _as_array(values - [0.0, 0.0, 2 * np.pi * turns], expected, args)
+
+
+def _drives(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+    """Yield a straight way, a turn on the spot, standing still, an arc, then any speeds from any pose."""
+    yield (0.0, 0.0, 0.0), 2.0, 2.0, 1.0
+    yield (0.0, 0.0, 0.0), -1.0, 1.0, 0.5
+    yield (0.1, 0.2, 0.5), 0.0, 0.0, 1.0
+    yield (0.0, 0.0, 0.0), 2.0, 4.0, 1.0
+    yield (0.1, -0.2, np.pi / 2), 3.0, 3.0, 2.0
+    for n in range(RANDOM_CASES):
+        left, right = rng.uniform(-FASTEST, FASTEST, 2).tolist()
+        pose = (*rng.uniform(-0.4, 0.4, 2).tolist(), float(rng.uniform(-np.pi, np.pi)))
+        yield pose, left, left if n % 5 == 0 else right, float(rng.uniform(0.1, 3.0))
+
+
+# --- usual faults of a step --------------------------------------------------------------------------------------
+
+
+def _straight(share: float) -> Callable[..., Floats]:
+    """Return a faulty step: the length of the arc straight on, in a heading ``share`` of the turn on from the old."""
+
+    def step(pose: Pose, left: float, right: float, seconds: float) -> Floats:
+        turn = WHEEL * (right - left) / AXLE * seconds
+        way, bearing = WHEEL * (left + right) / 2 * seconds, pose[2] + share * turn
+        return np.array([pose[0] + way * np.cos(bearing), pose[1] + way * np.sin(bearing), pose[2] + turn])
+
+    return step
+
+
+def _with(change: Callable[[Pose, float, float, float], tuple[Any, ...]]) -> Callable[..., Floats]:
+    """Return a faulty step: the right one for other arguments."""
+    return lambda *args: pose_after(*change(*args))
+
+
+def _axle_forgotten(pose: Pose, left: float, right: float, seconds: float) -> Floats:
+    """Return the step whose wheels are a metre apart."""
+    way, apart = (left + right) / 2, (right - left) / 2 * AXLE
+    return pose_after(pose, way - apart, way + apart, seconds)
+
+
+def _radius_forgotten(pose: Pose, left: float, right: float, seconds: float) -> Floats:
+    return pose_after(pose, left / WHEEL, right / WHEEL, seconds)
+
+
+def _half_forgotten(pose: Pose, left: float, right: float, seconds: float) -> Floats:
+    """Return the step that goes on at the sum of both wheels' speeds, not at their mean."""
+    way, apart = left + right, (right - left) / 2
+    return pose_after(pose, way - apart, way + apart, seconds)
+
+
+def _in_own_frame(pose: Pose, left: float, right: float, seconds: float) -> Floats:
+    """Return the step as the robot sees it, added to the pose without being turned into the world."""
+    return np.asarray(pose) + pose_after((0.0, 0.0, 0.0), left, right, seconds)
+
+
+def _only_straight_is_off(cases: list[Case]) -> bool:
+    """Tell whether all is right but where both wheels turn equally fast."""
+    off = [case for case in cases if case.off is not None]
+    return all(case.args[1] == case.args[2] for case in off)
+
+
+def _heading_stays(cases: list[Case]) -> bool:
+    """Tell whether the places are right and the headings are the old ones."""
+    return all(
+        _same_pose(case.got, [*case.expected[:2], case.args[0][2]], case.args) is None for case in cases
+    )  # nonsense is judged as well
+
+
+drive_step = Check(
+    "drive_step",
+    pose_after,
+    _drives,
+    _same_pose,
+    (
+        Fault(
+            "Every arc is right. When both wheels turn equally fast, w is 0 and there is no circle: go straight on.",
+            when=_only_straight_is_off,
+            name="w of zero",
+        ),
+        Fault(
+            "The robot goes straight in its old heading and turns afterwards: it turns while it goes.",
+            like=_straight(0.0),
+            name="straight, then turned",
+        ),
+        Fault(
+            "The robot turns first and goes straight in its new heading: it turns while it goes.",
+            like=_straight(1.0),
+            name="turned, then straight",
+        ),
+        Fault(
+            "The direction is right, midway between both headings; but the straight line is shorter than the arc.",
+            like=_straight(0.5),
+            name="the arc's length for the chord's",
+        ),
+        Fault(
+            "It turns the wrong way: a faster right wheel turns the robot to the left, counter-clockwise.",
+            like=_with(lambda pose, left, right, seconds: (pose, right, left, seconds)),
+            name="left for right",
+        ),
+        Fault(
+            "Wheel speeds are in rad/s: times the wheel's radius R they are metres per second.",
+            like=_radius_forgotten,
+            name="no wheel radius",
+        ),
+        Fault(
+            "It turns too little: the difference of both wheels' ways is divided by the axle A.", like=_axle_forgotten
+        ),
+        Fault("It goes twice as far: the middle of the axle has the mean of both speeds.", like=_half_forgotten),
+        Fault(
+            "The step is that of a robot that looks along x: turn it by the old heading first.",
+            like=_in_own_frame,
+            name="not turned by the old heading",
+        ),
+        Fault("The place is right, the heading is the old one: add the turn.", when=_heading_stays),
+        Fault(
+            "That is the pose after one second: multiply by the time.",
+            like=_with(lambda pose, left, right, seconds: (pose, left, right, 1.0)),  # noqa: ARG005 (that is the fault)
+            name="time left out",
+        ),
+    ),
+)
+
+
+# --- what was seen ----------------------------------------------------------------------------------------------
+
+
+def seen(outline: Floats, points: Floats, reach: float) -> float:
+    """Return the share of the outline's places that have a point within reach."""
+    if len(points) == 0:
+        return 0.0
+    apart = np.hypot(*np.moveaxis(outline[:, None] - points[None], -1, 0))
+    return float(np.mean(apart.min(axis=1) <= reach))
+
+
+def _drawn_outlines(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+    """Yield half of a wall, a wall without points, one point for two places, then arcs of circles with strays."""
+    wall = np.column_stack([np.linspace(0, 0.3, 4), np.zeros(4)])
+    yield wall, wall[:2] + np.array([0.0, 0.002]), 0.012
+    yield wall, np.empty((0, 2)), 0.012
+    yield wall, np.vstack([wall[:1]] * 5), 0.012
+    yield np.array([(0.0, 0.0), (0.01, 0.0)]), np.array([(0.005, 0.001)]), 0.012
+    yield np.array([(0.0, 0.0)]), np.array([(0.011, 0.011)]), 0.012  # within reach along x and along y, but not away
+    for n in range(RANDOM_CASES):
+        center, radius, reach = rng.uniform(-0.3, 0.3, 2), rng.uniform(0.05, 0.15), float(rng.uniform(0.005, 0.02))
+        bearings = np.linspace(0, 2 * np.pi, int(rng.integers(20, 80)), endpoint=False)
+        ring = center + radius * np.column_stack([np.cos(bearings), np.sin(bearings)])
+        on_arc = rng.uniform(0, rng.uniform(0.5, 6.3), int(rng.integers(0, 30)))
+        points = center + (radius + rng.normal(0, 0.004, len(on_arc)))[:, None] * np.column_stack(
+            [np.cos(on_arc), np.sin(on_arc)]
+        )
+        strays = rng.uniform(-0.5, 0.5, (n % 7, 2))
+        together = np.vstack([points, strays])
+        apart = np.hypot(*np.moveaxis(ring[:, None] - together[None], -1, 0)).min(axis=1, initial=np.inf)
+        clear = np.abs(apart - reach) > EDGE
+        if clear.any():
+            yield ring[clear], together, reach
+
+
+def _per_point(outline: Floats, points: Floats, reach: float) -> float:
+    """Return the share of the points that lie near the outline."""
+    return seen(points, outline, reach) if len(points) else 0.0
+
+
+def _in_box(outline: Floats, points: Floats, reach: float) -> float:
+    if len(points) == 0:
+        return 0.0
+    return float(np.mean(np.abs(outline[:, None] - points[None]).max(axis=2).min(axis=1) <= reach))
+
+
+def _squared(outline: Floats, points: Floats, reach: float) -> float:
+    return seen(outline, points, float(np.sqrt(reach)))
+
+
+def _pairs(outline: Floats, points: Floats, reach: float) -> float:
+    """Return the share of all pairs that are near to each other."""
+    if len(points) == 0:
+        return 0.0
+    return float(np.mean(np.hypot(*np.moveaxis(outline[:, None] - points[None], -1, 0)) <= reach))
+
+
+def _points_per_place(outline: Floats, points: Floats, reach: float) -> float:
+    near = _per_point(outline, points, reach) * len(points)
+    return near / len(outline)
+
+
+def _empty_is_off(cases: list[Case]) -> bool:
+    """Tell whether all is right but where there are no points."""
+    return all(len(case.args[1]) == 0 for case in cases if case.off is not None)
+
+
+share_seen = Check(
+    "share_seen",
+    seen,
+    _drawn_outlines,
+    judges.number(),
+    (
+        Fault("Everything is right but this: of an outline without any points nothing is seen, 0.", when=_empty_is_off),
+        Fault(
+            "That is the share of points near the outline: ask for each place of the outline instead.",
+            like=_per_point,
+            name="points for places",
+        ),
+        Fault(
+            "Ten points at one place show one place: count places, not points.",
+            like=_points_per_place,
+            name="points for places",
+        ),
+        Fault("That is the share of all pairs: for a place, one near point is enough.", like=_pairs),
+        Fault("That reach is a square: take the distance, not |dx| and |dy| apart.", like=_in_box),
+        Fault("The squared distance is compared with the reach: is a root missing?", like=_squared),
+        Fault(
+            "That is how many, not which share: divide by the number of places.",
+            like=lambda outline, points, reach: seen(outline, points, reach) * len(outline),
+            name="a count for a share",
+        ),
+        Fault(
+            "That is per cent: a share goes from 0 to 1.",
+            like=lambda outline, points, reach: 100 * seen(outline, points, reach),
+        ),
+        Fault(
+            "That is the part that was missed: 1 minus what is asked for.",
+            like=lambda outline, points, reach: 1 - seen(outline, points, reach),
+            name="missed for seen",
+        ),
+    ),
+)
