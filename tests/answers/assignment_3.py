@@ -27,20 +27,13 @@ def pipe_by_scipy(points, radius):
 
 
 def pipe_by_two_numbers(points, radius):
-    """Squares of squared distances, from several guesses beyond the points; the better end that lies beyond counts."""
+    """The squares of squared distances, from beyond the points on."""
     if len(np.unique(points, axis=0)) < 2:
         return None
     middle = points.mean(axis=0)
-    away = middle / np.linalg.norm(middle)
-    ends = []
-    for turn in (-0.5, 0.0, 0.5):
-        c, s = math.cos(turn), math.sin(turn)
-        start = middle + radius * np.array([c * away[0] - s * away[1], s * away[0] + c * away[1]])
-        cost = lambda q: float(((((points - q) ** 2).sum(axis=1) - radius**2) ** 2).sum() / radius**4)  # noqa: E731
-        ends.append(
-            minimize(cost, start, method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-18, "maxiter": 2000})
-        )
-    return min(ends, key=lambda end: end.fun).x
+    start = middle + radius * middle / np.linalg.norm(middle)
+    cost = lambda q: float(((((points - q) ** 2).sum(axis=1) / radius**2 - 1) ** 2).sum())  # noqa: E731
+    return minimize(cost, start, method="Nelder-Mead", options={"xatol": 1e-8, "fatol": 1e-16, "maxiter": 2000}).x
 
 
 def pipe_by_pairs(points, radius):
