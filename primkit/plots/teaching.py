@@ -10,17 +10,20 @@ Out: a matplotlib ``Figure``: a bar for each part, the usual wrong answer beside
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .look import BLUE, GREY, INK, PALE, count, set_title
+from .look import BLUE, GREY, INK, PALE, count
 from .story import Picture, freeze, plain
 
 Part = tuple[str, str, float, tuple[str, int]]
+Row = tuple[str, float | None, tuple[str, int]]  # a heading has no share
 
-WIDTH, HEAD, ROW = 9.0, 1.3, 0.42  # inches
+WIDTH, HEAD, ROW = 9.0, 1.3, 0.3  # inches
+CLEAR = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}  # behind words, for the grid not to cross them
+TITLE = 84  # letters in a line of the title
 LETTERS = 9.0
 MOST = 46  # letters of a wrong answer's name
 
@@ -44,31 +47,57 @@ def class_figure(name: str, students: int, parts: Sequence[Part]) -> Figure:
     """
     if not parts:
         raise ValueError("parts must hold at least one part of a problem set")
+    rows = list(_rows(parts))
     with plain():
-        figure = Picture(figsize=(WIDTH, HEAD + ROW * len(parts)), layout="constrained")
-        _draw_bars(figure.add_subplot(), parts)
-        set_title(figure.axes[0], _words(_finding(name, students, parts)))
+        figure = Picture(figsize=(WIDTH, HEAD + ROW * len(rows)), layout="constrained")
+        title = textwrap.fill(_words(_finding(name, students, parts)), TITLE)
+        figure.suptitle(title, x=0.01, ha="left", size=LETTERS + 2.5, weight="bold")
+        _draw_bars(figure.add_subplot(), rows)
         freeze(figure)
     return figure
 
 
-def _draw_bars(ax: Axes, parts: Sequence[Part]) -> None:
+def _rows(parts: Sequence[Part]) -> Iterator[Row]:
+    """Yield a heading for each task, and its parts; ``half-visible`` and ``half`` are one task."""
+    last = ""
+    for task, part, right, usual in parts:
+        head, _, rest = task.partition("-")
+        if head != last:
+            last = head
+            yield (head, None, ("", 0)) if part or rest else (head, right, usual)
+        if part or rest:
+            yield f"{part or rest}  ", right, usual
+
+
+def _draw_bars(ax: Axes, rows: Sequence[Row]) -> None:
     """Draw a bar for each part, and beside it the usual wrong answer."""
-    rows = range(len(parts))
-    ax.barh(rows, [100 * right for _, _, right, _ in parts], height=0.62, color=BLUE)
-    for row, (_, _, right, (fault, times)) in enumerate(parts):
+    for row, (_, right, (fault, times)) in enumerate(rows):
+        if right is None:
+            continue
+        ax.barh(row, 100 * right, height=0.66, color=BLUE)
         told = f"{100 * right:.0f} %" + (f"   {times} x {_short(fault)}" if times else "")
         place = (100 * right, row)
-        ax.annotate(_words(told), place, (5, 0), textcoords="offset points", va="center", fontsize=LETTERS, color=INK)
-    names = [_words(f"{task}: {part}" if part else task) for task, part, _, _ in parts]
-    ax.set_yticks(rows, names, fontsize=LETTERS)
-    ax.set(xlim=(0, 200), ylim=(len(parts) - 0.4, -0.6))  # the right half is for words
+        ax.annotate(
+            _words(told),
+            place,
+            (5, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize=LETTERS,
+            color=INK,
+            bbox=CLEAR,
+        )
+    ax.set_yticks(range(len(rows)), [_words(name) for name, _, _ in rows], fontsize=LETTERS)
+    for label, (_, right, _) in zip(ax.get_yticklabels(), rows, strict=True):
+        label.set_fontweight("bold" if right is None else "normal")
+    ax.set(xlim=(0, 200), ylim=(len(rows) - 0.4, -0.6))  # the right half is for words
     ax.set_xticks([0, 25, 50, 75, 100])
     ax.set_xlabel("share of right answers [%]", fontsize=LETTERS + 1, x=0.25)
     ax.grid(axis="x", color=PALE, linewidth=0.6)
     ax.set_axisbelow(True)
     ax.spines[["top", "right", "bottom"]].set_visible(False)
     ax.tick_params(color=GREY, labelsize=LETTERS)
+    ax.tick_params(axis="y", length=0)
 
 
 def _short(fault: str) -> str:
@@ -85,5 +114,5 @@ def _finding(name: str, students: int, parts: Sequence[Part]) -> str:
     task, part, right, (fault, times) = min(parts, key=lambda row: row[2])
     if right == 1:
         return f"{name}: all of {count(students, 'student')} have all of it right"
-    hardest = f"{name}: hardest was {task}{f', {part}' if part else ''}: {100 * right:.0f} % right"
+    hardest = f"{name}: {task}{f', {part}' if part else ''}, is hardest: {100 * right:.0f} % right"
     return f"{hardest}; most often: {_short(fault)}" if times else hardest

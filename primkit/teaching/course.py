@@ -52,7 +52,7 @@ c.Autograde.autograde_preprocessors = [
     "nbgrader.preprocessors.CheckCellMetadata",
 ]
 c.CarefulExecute.course = course
-c.CarefulExecute.timeout = 40  # seconds for each cell
+c.CarefulExecute.timeout = 30  # seconds for each cell
 c.CarefulExecute.megabytes = 4096  # of memory for each submission
 '''
 IGNORED = """\

@@ -43,16 +43,24 @@ KEPT = (
     *("PATH", "LANG", "LC_ALL", "LC_CTYPE", "TZ", "VIRTUAL_ENV", "LD_LIBRARY_PATH"),
     *("SYSTEMROOT", "SYSTEMDRIVE", "WINDIR", "COMSPEC", "PATHEXT", "NUMBER_OF_PROCESSORS", "PROCESSOR_ARCHITECTURE"),
 )
-LIMIT = """\
-try:
-    import resource as _r
-    _r.setrlimit(_r.RLIMIT_AS, ({0}, {0}))
-    _r.setrlimit(_r.RLIMIT_CORE, (0, 0))
-    del _r
-except (ImportError, ValueError, OSError):
-    pass
+# Memory is limited; and exit() is an error, as in a script, where IPython's would end the kernel some cells later.
+PREPARE = """\
+def _prepare():
+    import builtins, sys
+    for names in (vars(builtins), get_ipython().user_ns):
+        names.update(exit=sys.exit, quit=sys.exit)
+    try:
+        import resource
+        resource.setrlimit(resource.RLIMIT_AS, ({0}, {0}))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    except (ImportError, ValueError, OSError):
+        pass
+_prepare()
+del _prepare
 """
 MEGABYTE = 2**20
+GRAVE = ("MemoryError", "SystemExit")  # also where a test meets them
+LONGEST = 200  # letters of an error that are told
 MOST_LETTERS = 200_000  # of one cell's output that are kept
 MARKED = re.compile(r"^[^#\n]*\.mark\(", re.MULTILINE)  # the last line of a hidden test
 
@@ -62,7 +70,7 @@ class CarefulExecute(Execute):  # type: ignore[misc]
 
     course = Unicode("", help="The course folder.").tag(config=True)
     megabytes = Integer(4096, help="Memory limit of the kernel, in megabytes.").tag(config=True)
-    timeout = Integer(40, help="Time limit of a cell, in seconds.", allow_none=True).tag(config=True)
+    timeout = Integer(30, help="Time limit of a cell, in seconds.", allow_none=True).tag(config=True)
 
     # --- a notebook ---------------------------------------------------------------------------------------
 
@@ -120,6 +128,8 @@ class CarefulExecute(Execute):  # type: ignore[misc]
         elif _timed_out(cell):
             self.guilty.add(index)
             self._note(self.nb, index, "CellTimeoutError", f"took longer than {self.timeout} s and was interrupted")
+        else:
+            self._note_error(index)
         self._tidy(index)
         return cell, resources
 
@@ -161,6 +171,13 @@ class CarefulExecute(Execute):  # type: ignore[misc]
         ]
         self._note(nb, index, name, sentence)
 
+    def _note_error(self, index: int) -> None:
+        """Note a cell of the student's own that fails; that a test fails says its score."""
+        cell = self.nb.cells[index]
+        for error in (output for output in cell.outputs if output.output_type == "error"):
+            if error.ename in GRAVE or not cell.metadata.get("nbgrader", {}).get("grade"):
+                self._note(self.nb, index, error.ename, " ".join(error.evalue.split())[:LONGEST] or "fails")
+
     def _note(self, nb: Any, index: int, name: str, sentence: str) -> None:
         about = nb.cells[index].metadata.get("nbgrader", {})
         cell = about.get("grade_id", f"cell {index + 1}")
@@ -183,20 +200,19 @@ class CarefulExecute(Execute):  # type: ignore[misc]
 
     # --- a kernel -----------------------------------------------------------------------------------------
 
-    async def async_start_new_kernel(self, **options: Any) -> None:
+    def start_new_kernel(self, **options: Any) -> None:
         """Start a kernel that knows the course, and nothing of its teacher."""
         home = self.scratch / "home"
         home.mkdir(exist_ok=True)
         options["env"] = _environment(home, self.course)
         if (self.scratch / "truth.geojson").exists():
             options["env"][TRUTH] = str(self.scratch / "truth.geojson")
-        await super().async_start_new_kernel(**options)
+        super().start_new_kernel(**options)
 
-    async def async_start_new_kernel_client(self) -> Any:
-        """Limit the memory before the first cell runs."""
-        client = await super().async_start_new_kernel_client()
-        source = LIMIT.format(self.megabytes * MEGABYTE)
-        await self.async_wait_for_reply(await ensure_async(client.execute(source, silent=True, store_history=False)))
+    def start_new_kernel_client(self) -> Any:
+        """Prepare the kernel before the first cell runs."""
+        client = super().start_new_kernel_client()
+        self.wait_for_reply(client.execute(PREPARE.format(self.megabytes * MEGABYTE), silent=True, store_history=False))
         return client
 
     async def _async_check_alive(self) -> None:
