@@ -85,6 +85,22 @@ HELP = {
         "circle, triangle, rectangle or pentagon, for each shape (default: drawn)",
         "the file; one that is there is replaced (default: map.geojson)",
     ],
+    "teach": [
+        "usage: primkit teach [-h] COMMAND ...",
+        "new-course  make a course folder for nbgrader",
+        "primkit teach release ps1              release/ps1: for your students",
+        "The course folder is nbgrader's own: all its commands work in it as well",
+    ],
+    "teach new-course": ["a new folder, or an empty one", "(default: those of the project)"],
+    "teach grade": [
+        "the problem set, a folder in source/",
+        "the course folder (default: the folder you are in)",
+        "only this one; may be repeated",
+        "Grading runs the code that students hand in, on this computer and as you",
+        "It is no wall against malice",
+        "docker run --rm --network none --memory 6g",
+    ],
+    "teach leaks": ["notebooks, wheels, folders (default: release)"],
 }
 
 

@@ -155,6 +155,7 @@ class CarefulExecute(Execute):  # type: ignore[misc]
                 continue
             problem = self._run(_copied(cell), resources, earlier)
             self.nb.cells[earlier] = cell  # its outputs are those of the first time
+            self._tidy(earlier, told=True)
             if problem:  # this time it is guilty: once more, without it
                 self._blame(self.nb, earlier, *problem)
                 self.guilty.add(earlier)
@@ -183,8 +184,8 @@ class CarefulExecute(Execute):  # type: ignore[misc]
         cell = about.get("grade_id", f"cell {index + 1}")
         self.faults.append({"cell": cell, "name": name, "says": sentence})
 
-    def _tidy(self, index: int) -> None:
-        """Put back what a cell has deleted or changed of the files it was given."""
+    def _tidy(self, index: int, *, told: bool = False) -> None:
+        """Put back what a cell has deleted or changed of the files it was given, and note it unless it is told."""
         lost = [path for path in _files(self.given) if not _same(self.given / path, self.work / path)]
         if not lost:
             return
@@ -195,6 +196,8 @@ class CarefulExecute(Execute):  # type: ignore[misc]
                 shutil.copyfile(self.given / path, self.work / path)
         if whole:
             self._quietly(f"__import__('os').chdir({str(self.work)!r})")
+        if told:
+            return
         what = "the whole folder" if whole else ", ".join(sorted(map(str, lost)))
         self._note(self.nb, index, "FilesChanged", f"deleted or changed {what}: it was put back")
 

@@ -82,9 +82,8 @@ def secrets_of(folder: Path) -> Secrets:
                 name = cell.get("metadata", {}).get("nbgrader", {}).get("grade_id", "a cell")
                 secrets.add("source", f"the solution of {name} in {path.name}", part)
     for path in sorted((folder / "grader").rglob("*.py")):
-        for function in _functions(path.read_text(encoding="utf-8")):
-            body = "\n".join(ast.unparse(line) for line in _body(function))
-            secrets.add("grader", f"{function.name} in grader/{path.name}", body)
+        for name, body in _functions(path.read_text(encoding="utf-8")):
+            secrets.add("grader", f"{name} in grader/{path.name}", body)
     secrets.solutions = {where: held - public for where, held in secrets.solutions.items() if held - public}
     if (folder / SALT).is_file():
         secrets.words[(folder / SALT).read_text(encoding="utf-8").strip()] = "the salt"
@@ -107,12 +106,14 @@ def _split(source: str) -> tuple[str, list[str]]:
     return "\n".join(shown), ["\n".join(part) for part in hidden]
 
 
-def _functions(source: str) -> Iterator[ast.FunctionDef]:
-    return (node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.FunctionDef))
-
-
-def _body(function: ast.FunctionDef) -> Sequence[ast.stmt]:
-    return function.body[1:] if ast.get_docstring(function) else function.body
+def _functions(source: str) -> Iterator[tuple[str, str]]:
+    """Yield the functions of a module: their names, and their code without first line and docstring."""
+    lines = source.splitlines()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.FunctionDef):
+            body = node.body[1:] if ast.get_docstring(node) else node.body
+            if body:
+                yield node.name, "\n".join(lines[body[0].lineno - 1 : body[-1].end_lineno])
 
 
 # --- pieces -------------------------------------------------------------------------------------------------

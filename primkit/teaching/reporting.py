@@ -97,6 +97,15 @@ def _overview_rows(seen: Overview) -> Iterable[Sequence[Any]]:
 def _csv(rows: Iterable[Sequence[Any]]) -> bytes:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    for row in rows:  # a spreadsheet takes what begins like this for a formula, and students choose these words
-        writer.writerow([f"'{cell}" if str(cell)[:1] in "=+@\t\r" else cell for cell in row])
+    for row in rows:
+        writer.writerow(map(_harmless, row))
     return text.getvalue().encode("utf-8")
+
+
+def _harmless(cell: Any) -> Any:
+    """Return a cell that no spreadsheet takes for a formula: students choose some of these words.
+
+    >>> _harmless("=1+1"), _harmless("-"), _harmless(-0.5)
+    ("'=1+1", '-', -0.5)
+    """
+    return f"'{cell}" if isinstance(cell, str) and len(cell) > 1 and cell[0] in "=+-@\t\r" else cell

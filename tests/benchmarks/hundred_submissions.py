@@ -44,7 +44,6 @@ BESIDE = {
     "deletes-its-folder": "import os, shutil\nshutil.rmtree(os.getcwd())",
     "deletes-its-files": "import os\nfor name in os.listdir('.'):\n    os.remove(name)",
     "changes-directory": "import os\nos.chdir('/')",
-    "closes-stdout": "import sys\nsys.stdout.close()",
     "stderr": "import sys\nprint('careful', file=sys.stderr)",
 }
 # Hidden tests that show no number have no points.
@@ -127,16 +126,16 @@ def main(folder):
     teach(course, "report", NAME)
     with open(course / "reports" / NAME / "grades.csv", encoding="utf-8") as file:
         scores = {row["student_id"]: float(row["score"]) for row in csv.DictReader(file)}
-    with open(course / "reports" / NAME / "faults.csv", encoding="utf-8") as file:
-        told = {row["student"] for row in csv.DictReader(file)}
-    off = {
-        student: (scores.get(student), points) for student, points in expected.items() if scores.get(student) != points
-    }
-    print(
-        f"{len(expected)} submissions in {took:.0f} s; {len(scores)} graded; {len(told)} with a line among the faults"
-    )
-    print(f"scores that are not as expected: {off or 'none'}")
-    return not off
+    told = set()
+    for table in ("faults.csv", "wrong.csv"):
+        with open(course / "reports" / NAME / table, encoding="utf-8") as file:
+            told |= {row["student"] for row in csv.DictReader(file)}
+    off = {name: (scores.get(name), points) for name, points in expected.items() if scores.get(name) != points}
+    kinds = ("task-", "file-", "wrong-", "no-numbers-at", "untouched", "beside-deletes")
+    faulty = {name for name in expected if name.startswith(kinds)}
+    print(f"{len(expected)} submissions in {took:.0f} s; {len(scores)} graded; scores not as expected: {off or 'none'}")
+    print(f"{len(faulty)} of them have a fault; without a line in the report: {faulty - told or 'none'}")
+    return not off and faulty <= told
 
 
 if __name__ == "__main__":

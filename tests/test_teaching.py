@@ -1,0 +1,494 @@
+"""Teaching: from an empty folder to grades and feedback by the command line alone, through nbgrader itself."""
+
+import csv
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import nbformat
+import pytest
+
+from primkit.__main__ import main
+from primkit.formats import save_scans
+from primkit.grading import MIME, personal_truth
+from primkit.personal import personal_scans, personal_world
+from primkit.teaching.checking import check
+from primkit.teaching.course import ASSIGNMENTS, Course, new_course
+from primkit.teaching.handed_in import file_faults, tree_hash
+from tests.submissions import ProblemSet, about, answers_of, read, with_cell
+
+ROOT = Path(__file__).resolve().parent.parent
+PS, NUMBER = "ps1", 1
+
+
+def teach(folder, *words, code=0):
+    """Run ``primkit teach`` in a process of its own, in a folder; return what it prints."""
+    done = subprocess.run(
+        [sys.executable, "-m", "primkit", "teach", *map(str, words)],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        env=os.environ | {"PYTHONUTF8": "1"},
+        check=False,
+        timeout=600,
+    )
+    assert done.returncode == code, done.stdout + done.stderr
+    return done.stdout + done.stderr
+
+
+def table(path):
+    with open(path, encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+# --- the round trip -----------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def graded(tmp_path_factory):
+    """A course with three submissions and one that is no notebook; and what each command said."""
+    folder = tmp_path_factory.mktemp("teacher")
+    said = {"new-course": teach(folder, "new-course", "course")}
+    course = folder / "course"
+    (course / "students.csv").write_text("id,first_name,last_name,email\nright,Ada,,\n0123,,,\nmixed,,,\n")
+    said["check"] = teach(course, "check")
+    said["release"] = teach(course, "release", PS)
+    problem_set = ProblemSet(course, PS)
+    problem_set.hand_in("right", problem_set.reference())
+    problem_set.hand_in("0123", problem_set.released)  # untouched, and a name that is a number
+    mixture, points = {}, 0
+    for task, kinds in answers_of(NUMBER).items():
+        name, (_, expected, _) = next((n, a) for n, a in kinds["wrong"].items() if 0 < a[1] < problem_set.of[task])
+        mixture[task] = problem_set.listed(task, "wrong", name)
+        points += expected
+    problem_set.hand_in("mixed", problem_set.with_answers(mixture), listed=NUMBER)
+    problem_set.hand_in("broken", '{"cells": [')
+    before = tree_hash(course / "submitted")
+    said["grade"] = teach(course, "grade", PS)
+    assert tree_hash(course / "submitted") == before
+    said["report"] = teach(course, "report", PS)
+    return course, problem_set, said, {"right": problem_set.points, "0123": 0, "mixed": points}
+
+
+def test_full_marks_none_and_exactly_the_expected_ones(graded):
+    course, _, _, expected = graded
+    rows = table(course / "reports" / PS / "grades.csv")  # nbgrader's own export
+    assert {row["student_id"]: float(row["score"]) for row in rows} == expected
+    assert {float(row["max_score"]) for row in rows} == {15.0}
+
+
+def test_what_the_commands_say(graded):
+    course, _, said, _ = graded
+    assert re.search(r"problem sets .*\bps1, ps2", said["new-course"])
+    assert said["check"].splitlines()[-1] == "All is there."
+    assert said["release"] == f"release/{PS} is ready: no solution was found in it\n"
+    assert "broken: ps1.ipynb: is not JSON" in said["grade"]
+    assert "4 submissions in" in said["grade"]
+    assert "3 graded, 1 not graded" in said["grade"]
+    assert "submitted/ is as it was" in said["grade"]
+    assert "4 handed in, 3 graded" in said["report"]
+    assert str(course / "reports" / PS) in said["report"]
+
+
+def test_what_was_graded_is_not_graded_again_until_it_changes(graded):
+    course, problem_set, _, expected = graded
+    said = teach(course, "grade", PS, "--student", "mixed")
+    assert "mixed: graded before, and not changed since" in said
+    shutil.rmtree(course / "submitted" / "mixed")
+    try:
+        problem_set.hand_in("mixed", problem_set.released)
+        shutil.copytree(course, course.parent / "again")  # the others want this course as it is
+    finally:
+        shutil.rmtree(course / "submitted" / "mixed")
+        shutil.copytree(course / "autograded" / "mixed", course / "submitted" / "mixed")
+    again = course.parent / "again"
+    said = teach(again, "grade", PS, "--student", "mixed")
+    assert re.search(r"mixed: graded in \d+ s", said)
+    teach(again, "report", PS)
+    scores = {row["student_id"]: float(row["score"]) for row in table(again / "reports" / PS / "grades.csv")}
+    assert scores == expected | {"mixed": 0.0}
+
+
+def test_the_overview_counts_each_wrong_answer(graded):
+    course, _, _, _ = graded
+    wrong = table(course / "reports" / PS / "wrong.csv")
+    mixed = {row["name"] for row in wrong if row["student"] == "mixed"}
+    assert mixed
+    assert not mixed & {"not attempted", "wrong in another way"}  # each has its own name
+    assert {row["name"] for row in wrong if row["student"] == "0123"} == {"not attempted"}
+    assert not [row for row in wrong if row["student"] == "right"]
+    lines = table(course / "reports" / PS / "overview.csv")
+    parts = [line for line in lines if line["part"]]
+    assert len(parts) == 12
+    assert {line["students"] for line in lines} == {"3"}
+    for line in parts:
+        mine = [row for row in wrong if row["part"] == line["part"] and row["task"] == line["task"]]
+        assert float(line["share_right"]) == pytest.approx(1 - len(mine) / 3, abs=1e-3)
+        counts = {line[f"wrong_{k}"]: int(line[f"count_{k}"]) for k in (1, 2, 3) if line[f"wrong_{k}"]}
+        assert sum(counts.values()) == len(mine)
+        assert counts["not attempted"] == 1
+    assert (course / "reports" / PS / "overview.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_fault_has_its_line(graded):
+    course, _, _, _ = graded
+    rows = table(course / "reports" / PS / "faults.csv")
+    assert [(row["student"], row["cell"], row["name"]) for row in rows] == [("broken", "ps1.ipynb", "not a notebook")]
+
+
+def test_the_feedback_holds_the_marks_and_what_is_off(graded):
+    course, problem_set, _, _ = graded
+    html = {name: (course / "feedback" / name / PS / f"{PS}.html").read_text("utf-8") for name in ("right", "mixed")}
+    for task in problem_set.solutions:
+        assert f"{task}: 4 of 4 points" in html["right"]
+        assert re.search(rf"{task}: \d of 4 points", html["mixed"])
+    assert "<i>wrong</i>: in " in html["mixed"]
+    assert ">grader</span>" in html["mixed"]  # which tests ran is seen, not what is in them
+    assert "def hit_arc" not in html["mixed"]
+
+
+def test_a_released_notebook_is_a_student_s(graded):
+    course, problem_set, _, _ = graded
+    text = json.dumps(problem_set.released)
+    assert text.count("raise NotImplementedError") == len(problem_set.solutions)
+    assert "from grader" not in text
+    assert not (course / "release" / PS / "grader").exists()
+
+
+def test_nbgrader_s_own_command_grades_with_our_limits(graded):
+    """The course folder is nbgrader's: whoever grades from formgrader gets the careful way as well."""
+    course, _, _, _ = graded
+    notebook = read(course / "autograded" / "mixed" / PS / f"{PS}.ipynb")
+    assert notebook["metadata"]["primkit"] == {"faults": []}
+    marks = [
+        output["data"][MIME]
+        for cell in notebook["cells"]
+        for output in cell.get("outputs", ())
+        if MIME in output.get("data", {})
+    ]
+    assert len(marks) == 3
+
+
+# --- personal maps ------------------------------------------------------------------------------------------
+
+HIDDEN = """\
+# The hidden tests mark this function when you hand it in.
+### BEGIN HIDDEN TESTS
+from grader import maps
+
+maps.RADIUS.mark("radius", globals())
+### END HIDDEN TESTS"""
+GRADER = """\
+from primkit.checks import Check
+from primkit.checks.judges import number
+from primkit.grading import Part, Task, personal_truth
+
+def _reference():
+    return next(shape for shape in personal_truth().shapes if shape.kind == "circle").radius
+
+CHECK = Check("radius", _reference, lambda rng: [()], number("m", 0.005))
+RADIUS = Task("radius", [Part("the circle's radius", 3, CHECK)])
+"""
+LOOKS = """\
+from pathlib import Path
+import primkit as pk
+
+print(pk.load_scans("my_scans.npz").ranges.shape)"""
+
+
+def small_course(root):
+    """A course of one problem set about a personal map."""
+    assignments = root / "assignments"
+    source = assignments / "source" / "map"
+    source.mkdir(parents=True)
+    (assignments / "grader").mkdir()
+    (assignments / "grader" / "__init__.py").touch()
+    (assignments / "grader" / "maps.py").write_text(GRADER)
+
+    def cell(source, name, **more):
+        flags = {
+            "schema_version": 3,
+            "grade_id": name,
+            "locked": True,
+            "grade": False,
+            "solution": False,
+            "task": False,
+        }
+        return nbformat.v4.new_code_cell(source, metadata={"nbgrader": flags | more})
+
+    solution = "def radius():\n    ### BEGIN SOLUTION\n    return 0.07\n    ### END SOLUTION"
+    cells = [
+        cell(LOOKS, "looks"),
+        cell(solution, "radius", solution=True, locked=False),
+        cell(HIDDEN, "radius-hidden", grade=True, points=3, cell_type="code"),
+    ]
+    about_it = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
+    nbformat.write(nbformat.v4.new_notebook(cells=cells, metadata=about_it), source / "map.ipynb")
+    save_scans(personal_scans(personal_truth()), source / "my_scans.npz")
+    return new_course(root / "course", assignments)
+
+
+def test_everybody_is_graded_on_their_own_map(tmp_path):
+    course = small_course(tmp_path)
+    (course.root / "students.csv").write_text("id,first_name,last_name,email\nada,,,\nbob,,,\n")
+    assert "personal/<student>/my_scans.npz: 2 of them" in teach(course.root, "release", "map")
+    scans = {name: (course.root / "personal" / name / "my_scans.npz").read_bytes() for name in ("ada", "bob")}
+    assert scans["ada"] != scans["bob"]
+    for name, data in scans.items():
+        assert name.encode() not in data
+        assert course.salt().encode() not in data
+    problem_set = ProblemSet(course.root, "map")
+    radius = personal_world("ada", salt=course.salt()).shapes[0].radius
+    for name in ("ada", "bob"):  # bob hands in ada's answer, and ada's scans
+        # What the student's code can see: neither the salt nor the teacher's environment.
+        secrets = ("a password", course.salt())
+        looks = f"import os\nassert not [word for word in {secrets!r} if word in str(dict(os.environ))]"
+        notebook = with_cell(problem_set.with_answers({"radius": f"def radius():\n    return {radius}"}), looks)
+        folder = problem_set.hand_in(name, notebook)
+        (folder / "my_scans.npz").write_bytes(scans["ada"])
+    os.environ["LEAKED"] = "a password"
+    try:
+        said = teach(course.root, "grade", "map")
+    finally:
+        del os.environ["LEAKED"]
+    assert "to look at" not in said
+    teach(course.root, "report", "map")
+    scores = {row["student_id"]: float(row["score"]) for row in table(course.root / "reports" / "map" / "grades.csv")}
+    assert scores == {"ada": 3.0, "bob": 0.0}
+
+
+# --- running what is handed in ------------------------------------------------------------------------------
+
+TROUBLE = {
+    "first": "x = 1\nopen('made.txt', 'w').close()",
+    "loop": "y = 2\nwhile True:\n    pass",
+    "after": "x += 1\nprint(x, y)",
+    "deletes": "import os, shutil\nshutil.rmtree(os.getcwd())",
+    "reads": "print(open('given.txt').read())",
+    "deaf": "while True:\n    try:\n        while True:\n            pass\n    except:\n        pass",
+    "dies": "import os\nos._exit(3)",
+    "hog": "hog = []\nwhile True:\n    hog.append(bytearray(10**8))",
+    "leaves": "exit()",
+    "broken": "def (",
+    "warns": "import warnings\nwarnings.warn('careful')",
+    "last": "x += 1\nprint(x)",
+}
+
+
+@pytest.mark.skipif(os.name != "posix", reason="the memory limit is told about a second late on Windows")
+def test_whatever_a_cell_does_costs_itself_alone(tmp_path):
+    from primkit.teaching.executing import CarefulExecute
+
+    folder = tmp_path / "handed in"
+    folder.mkdir()
+    (folder / "given.txt").write_text("given")
+    notebook = nbformat.v4.new_notebook(
+        cells=[
+            nbformat.v4.new_code_cell(source, metadata={"nbgrader": {"grade_id": name}})
+            for name, source in TROUBLE.items()
+        ]
+    )
+    execute = CarefulExecute(course=str(tmp_path), timeout=2, megabytes=2000, iopub_timeout=1)
+    resources = {"metadata": {"path": str(folder)}, "nbgrader": {"student": "ada"}}
+    notebook, _ = execute.preprocess(notebook, resources)
+
+    outputs = dict(zip(TROUBLE, (cell.outputs for cell in notebook.cells), strict=True))
+    says = {name: "".join(out.get("text", "") for out in outs).strip() for name, outs in outputs.items()}
+    errors = {name: [out.ename for out in outs if out.output_type == "error"] for name, outs in outputs.items()}
+    assert says["after"] == "2 2"
+    assert says["reads"] == "given"
+    assert says["last"] == "3"  # after three kernels
+    assert errors["loop"][-1] == "CellTimeoutError"
+    assert errors["deaf"] == ["CellTimeoutError"]
+    assert errors["dies"] == ["KernelDied"]
+    assert errors["hog"] == ["MemoryError"]
+    assert errors["leaves"] == ["SystemExit"]
+    assert errors["broken"] == ["SyntaxError"]
+    assert outputs["warns"] == []
+    assert [name for name in ("first", "after", "deletes", "reads", "last") if errors[name]] == []
+    noted = [(fault["cell"], fault["name"]) for fault in notebook.metadata.primkit.faults]
+    assert noted == [
+        ("loop", "CellTimeoutError"),
+        ("deletes", "FilesChanged"),
+        ("deaf", "CellTimeoutError"),
+        ("dies", "KernelDied"),
+        ("hog", "MemoryError"),
+        ("leaves", "SystemExit"),
+        ("broken", "SyntaxError"),
+    ]
+    assert sorted(path.name for path in folder.iterdir()) == ["given.txt"]  # the submission's own folder
+
+
+def test_a_hidden_test_without_its_number_has_no_points(tmp_path):
+    from primkit.teaching.executing import CarefulExecute
+
+    def cell(source):
+        flags = {"grade": True, "grade_id": "half-hidden", "points": 2}
+        return nbformat.v4.new_code_cell(source, metadata={"nbgrader": flags})
+
+    cells = [cell(f"x.mark('half', globals())  # {n}") for n in range(4)]
+    shown = ["1.5", "7.0", "'all of it'", None]
+    for each, text in zip(cells, shown, strict=True):
+        if text is not None:
+            each.outputs = [nbformat.v4.new_output("execute_result", data={"text/plain": text}, execution_count=1)]
+    notebook = nbformat.v4.new_notebook(cells=cells)
+    execute = CarefulExecute(course=str(tmp_path))
+    execute.faults = []
+    execute._numbers_only(notebook)
+    failed = [any(output.output_type == "error" for output in each.outputs) for each in notebook.cells]
+    assert failed == [False, True, True, True]
+
+
+# --- a course, and what it lacks ----------------------------------------------------------------------------
+
+
+@pytest.fixture
+def course(tmp_path):
+    return new_course(tmp_path / "course", ASSIGNMENTS)
+
+
+def faults(course, **more):
+    return {finding.what: finding for finding in check(course, **more) if not finding.fine}
+
+
+def test_a_new_course_has_its_own_secret(course, tmp_path):
+    assert len(course.salt()) == 32
+    assert course.salt() != new_course(tmp_path / "another", ASSIGNMENTS).salt()
+    if os.name == "posix":
+        assert (course.root / "salt.txt").stat().st_mode & 0o077 == 0
+    assert "salt.txt" in (course.root / ".gitignore").read_text().splitlines()
+
+
+def test_nothing_is_written_over_a_course(course):
+    with pytest.raises(ValueError, match="must be a new folder or an empty one: nothing is ever written over a course"):
+        new_course(course.root, ASSIGNMENTS)
+
+
+def test_without_the_project_s_folder_one_sentence_says_where_to_get_it(tmp_path, capsys):
+    words = ["teach", "new-course", str(tmp_path / "course"), "--assignments", str(tmp_path / "nowhere")]
+    assert main(words) == 2
+    assert "an installed wheel holds none; download the project's folder" in capsys.readouterr().err
+    assert not (tmp_path / "course").exists()
+
+
+def test_all_is_there_in_a_new_course(course):
+    assert faults(course) == {}
+
+
+BREAK = {
+    "salt.txt": (lambda root: (root / "salt.txt").unlink(), "salt.txt", "a new salt makes new maps"),
+    "a short salt": (lambda root: (root / "salt.txt").write_text("short"), "salt.txt", "."),
+    "open salt": (lambda root: (root / "salt.txt").chmod(0o644), "salt.txt", "chmod 600"),
+    "grader": (lambda root: shutil.rmtree(root / "grader"), "grader/", "copy notebooks/assignments/grader"),
+    "source": (lambda root: shutil.rmtree(root / "source"), "source/", "copy notebooks/assignments/source"),
+    "config": (lambda root: (root / "nbgrader_config.py").unlink(), "course folder", "new-course"),
+    "limits": (lambda root: (root / "nbgrader_config.py").write_text(""), "nbgrader_config.py", "CarefulExecute"),
+    "students": (lambda root: (root / "students.csv").write_text("name\nada\n"), "students.csv", "."),
+    "an id": (lambda root: (root / "students.csv").write_text("id\na/b\n"), "students.csv", "letters, digits"),
+    "twice": (lambda root: (root / "students.csv").write_text("id\nada\nada\n"), "students.csv", "once"),
+    "gradebook": (lambda root: (root / "gradebook.db").write_text("no base"), "gradebook.db", "put a copy"),
+}
+
+
+@pytest.mark.parametrize(("damage", "what", "mend"), BREAK.values(), ids=BREAK)
+def test_check_names_a_fault_and_how_it_is_mended(course, damage, what, mend):
+    if what == "salt.txt" and os.name != "posix" and mend == "chmod 600":
+        pytest.skip("Windows has other rights")
+    damage(course.root)
+    found = faults(course)
+    assert what in found
+    assert re.search(re.escape(mend), found[what].mend + found[what].found), found
+
+
+def test_check_compares_versions(course, tmp_path):
+    pins = tmp_path / "environment.txt"
+    pins.write_text("nbgrader==0.0.1  # old\nno-such-package==1.0\n-e .\n")
+    found = faults(course, environment=pins)
+    assert found["nbgrader"].found.endswith(", needs 0.0.1")
+    assert found["no-such-package"].found == "missing, needs 1.0"
+    assert f"-m pip install -r {pins}" in found["nbgrader"].mend
+
+
+def test_check_ends_with_1_where_something_is_wrong(course, capsys):
+    (course.root / "salt.txt").unlink()
+    assert main(["teach", "check", "--course", str(course.root)]) == 1
+    out = capsys.readouterr().out
+    assert "FAULT  salt.txt: salt.txt is missing" in out
+    assert out.endswith("1 fault found\n")
+
+
+SENTENCES = {
+    "no course": (["check"], None),
+    "no such set": (["release", "ps11"], "there is no problem set 'ps11'; did you mean 'ps1'?"),
+    "not handed in": (["grade", "ps1"], "nothing was handed in: put notebooks into submitted/<student>/ps1/"),
+    "not graded": (["report", "ps1"], "nothing of ps1 has been graded yet: run `primkit teach grade ps1` first"),
+    "nothing to look at": (["leaks", "nowhere.whl"], "there is no nowhere.whl to look for leaks in"),
+}
+
+
+@pytest.mark.parametrize(("words", "sentence"), list(SENTENCES.values())[1:], ids=list(SENTENCES)[1:])
+def test_what_cannot_be_done_is_said_in_one_sentence(course, words, sentence, capsys):
+    assert main(["teach", *words, "--course", str(course.root)]) == 2
+    err = capsys.readouterr().err
+    assert sentence in err
+    assert len(err.splitlines()) == 1
+
+
+def test_elsewhere_is_no_course(tmp_path, capsys):
+    assert main(["teach", "release", "ps1", "--course", str(tmp_path)]) == 2
+    assert "is no course folder: make one with `primkit teach new-course DIR`" in capsys.readouterr().err
+
+
+def test_grading_comes_after_releasing(course, capsys):
+    shutil.copytree(course.root / "source" / PS, course.root / "submitted" / "ada" / PS)
+    assert main(["teach", "grade", PS, "--course", str(course.root)]) == 2
+    assert f"{PS} was not released: run `primkit teach release {PS}` first" in capsys.readouterr().err
+
+
+FILES = {
+    "not JSON": ('{"cells": [', "is not JSON"),
+    "no list of cells": ("{}", "has no list of cells"),
+    "a list": ("[]", "has no list of cells"),
+    "not text": (b"\xff\xfe\x00", "is not text"),
+    "another notebook": ('{"cells": [{"metadata": {}}]}', "holds no cell of the problem set"),
+    "absent": (None, "there is no ps1.ipynb, found other.ipynb"),
+}
+
+
+@pytest.mark.parametrize(("content", "sentence"), FILES.values(), ids=FILES)
+def test_a_file_that_is_no_submission_gets_its_own_sentence(course, content, sentence):
+    folder = course.root / "submitted" / "ada" / PS
+    folder.mkdir(parents=True)
+    name = "other.ipynb" if content is None else f"{PS}.ipynb"
+    (folder / name).write_bytes(content if isinstance(content, bytes) else (content or "{}").encode())
+    (fault,) = file_faults(course, PS, "ada")
+    assert fault.student == "ada"
+    assert sentence in fault.says
+
+
+def test_a_hash_sees_every_change(tmp_path):
+    (tmp_path / "a").mkdir()
+    seen = {tree_hash(tmp_path)}
+    for change in (
+        lambda: (tmp_path / "a" / "x").write_text("1"),
+        lambda: (tmp_path / "a" / "x").write_text("2"),
+        lambda: (tmp_path / "a" / "x").rename(tmp_path / "a" / "y"),
+        lambda: (tmp_path / "a" / "y").unlink(),
+        lambda: (tmp_path / "a").rmdir(),
+    ):
+        change()
+        seen.add(tree_hash(tmp_path))
+    assert len(seen) == 5  # without the file it is as before
+    (tmp_path / "__pycache__").mkdir()
+    assert tree_hash(tmp_path) in seen
+
+
+def test_the_course_is_the_folder_that_is_given(tmp_path):
+    assert Course(tmp_path / "x" / "..").root == tmp_path.resolve()
+    assert about({"metadata": {}}) == {}
+    assert ROOT / "notebooks" / "assignments" == ASSIGNMENTS
