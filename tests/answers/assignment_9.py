@@ -1,0 +1,308 @@
+"""The capstone: a pipeline on one's own scans, and a hunt for three bugs."""
+
+import math
+
+import numpy as np
+from scipy.optimize import least_squares
+from scipy.spatial import ConvexHull, cKDTree
+
+import primkit as pk
+from primkit import find_shapes as ready_made
+
+# --- my_shapes ---------------------------------------------------------------------------------------------
+
+
+def groups_of(scans, resolution=0.001):
+    grid = pk.Grid(resolution)
+    grid.add(scans)
+    points = grid.points()
+    labels = pk.link(points)
+    return [points[labels == label] for label in range(labels.max() + 1)]
+
+
+def meet(one, other):
+    return np.linalg.solve([one.normal, other.normal], [one.offset, other.offset])
+
+
+def polygon_by_sides(points, labels):
+    """A line for each group of points, sorted by the bearings of their outward normals; neighbours meet."""
+    middle = points.mean(axis=0)
+    lines = [pk.fit_line(points[labels == label]) for label in np.unique(labels)]
+    lines = [line.turned_round() if line.signed_distance([middle])[0] > 0 else line for line in lines]
+    lines.sort(key=lambda line: line.angle % (2 * math.pi))
+    return pk.Polygon([meet(a, b) for a, b in zip(lines, lines[1:] + lines[:1], strict=True)])
+
+
+def settled(points, k, turn):
+    """Sides as in K-Means: equal shares by bearing, then lines and the side from which a point lies farthest out."""
+    x, y = (points - points.mean(axis=0)).T
+    labels = np.argsort(np.argsort((np.arctan2(y, x) - turn) % (2 * math.pi))) * k // len(points)
+    for _ in range(40):
+        shape = polygon_by_sides(points, labels)
+        out = (points[:, None] - shape.vertices) @ shape.normals.T  # (N, corner, side)
+        before, labels = labels, out[:, range(k), range(k)].argmax(axis=1)
+        if len(np.unique(labels)) < k or np.bincount(labels).min() < 3 or (labels == before).all():
+            break
+    return shape
+
+
+def shapes_by_price(scans):
+    """Circle, triangle, rectangle and pentagon fitted to each group; the cheapest by its misfit and its numbers."""
+    found = []
+    for points in groups_of(scans):
+        rivals = [(3, pk.fit_circle(points))]
+        for k in (3, 4, 5):
+            for turn in np.linspace(0, 2 * math.pi / k, 6, endpoint=False):
+                try:
+                    rivals.append((2 * k, settled(points, k, turn)))
+                except (ValueError, np.linalg.LinAlgError, AttributeError):
+                    continue
+        cost = [
+            (shape.signed_distance(points) ** 2).sum() / 0.0008**2 + numbers * math.log(len(points))
+            for numbers, shape in rivals
+        ]
+        found.append(rivals[int(np.argmin(cost))][1])
+    return found
+
+
+def shapes_by_lines(scans):
+    """A circle if all lies near one; else lines by RANSAC, each point to its nearest line, and their corners."""
+    found = []
+    for points in groups_of(scans):
+        circle = pk.fit_circle(points)
+        if np.abs(circle.signed_distance(points)).max() < 0.002:
+            found.append(circle)
+            continue
+        lines = [
+            one.line
+            for one in pk.find_lines(points, 0.0015, left_over=0.03, rng=0)
+            if one.inliers.sum() > 0.06 * len(points)
+        ]
+        nearest = np.argmin([np.abs(line.signed_distance(points)) for line in lines], axis=0)
+        found.append(polygon_by_sides(points, nearest))
+    return found
+
+
+def corners_by_hull(points, least):
+    """The hull's corners, the flattest left out one after the other."""
+    ring = points[ConvexHull(points).vertices]
+    while len(ring) > 3:
+        before, after = np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)
+        base = after - before
+        height = np.abs(base[:, 0] * (ring - before)[:, 1] - base[:, 1] * (ring - before)[:, 0]) / np.hypot(*base.T)
+        if height.min() > least:
+            break
+        ring = np.delete(ring, height.argmin(), axis=0)
+    return ring
+
+
+def shapes_by_hull(scans):
+    """The hull, simplified; many corners are a circle; each point to the nearest side, and lines anew."""
+    found = []
+    for points in groups_of(scans):
+        circle = pk.fit_circle(points, "kasa")
+        if circle.signed_distance(points).std() < 0.001:
+            found.append(circle)
+            continue
+        ring = corners_by_hull(points, 0.006)
+        mids, ends = (ring + np.roll(ring, -1, axis=0)) / 2, np.roll(ring, -1, axis=0) - ring
+        normals = np.column_stack([ends[:, 1], -ends[:, 0]]) / np.hypot(*ends.T)[:, None]
+        away = np.abs(((points[:, None] - mids) * normals).sum(axis=-1))
+        found.append(polygon_by_sides(points, away.argmin(axis=1)))
+    return found
+
+
+def shapes_circles(scans):
+    return [pk.fit_circle(points) for points in groups_of(scans)]
+
+
+def shapes_boxes(scans):
+    """Extents: the box around each group."""
+    found = []
+    for points in groups_of(scans):
+        (left, low), (right, high) = points.min(axis=0), points.max(axis=0)
+        circle = pk.fit_circle(points)
+        box = pk.Polygon([(left, low), (right, low), (right, high), (left, high)])
+        found.append(circle if circle.signed_distance(points).std() < 0.001 else box)
+    return found
+
+
+def shapes_one_missing(scans):
+    """The smallest group is taken for a stray."""
+    kept = sorted(groups_of(scans), key=len)[1:]
+    return [shape for shape in shapes_by_price(scans) if any(shape_near(shape, points) for points in kept)]
+
+
+def shape_near(shape, points):
+    return np.abs(shape.signed_distance(points)).max() < 0.005
+
+
+def shapes_split(scans):
+    """One half of a group's points after the other."""
+    found = []
+    for points in groups_of(scans):
+        left = points[:, 0] < points[:, 0].mean()
+        found += [pk.fit_circle(points[left]), pk.fit_circle(points[~left])]
+    return found
+
+
+def shapes_corner_more(scans):
+    """A corner that was not quite hit comes out as a short side."""
+    found = []
+    for shape in shapes_by_price(scans):
+        if shape.kind == "rectangle":
+            a, b, c, d = shape.vertices
+            shape = pk.Polygon([a + 0.1 * (d - a), a + 0.1 * (b - a), b, c, d])
+        found.append(shape)
+    return found
+
+
+def shapes_large(scans):
+    """As if the hits were 8 mm outside the outlines."""
+    return [
+        pk.Circle(shape.center, shape.radius + 0.008)
+        if shape.kind == "circle"
+        else pk.Polygon(shape.centroid + 1.1 * (shape.vertices - shape.centroid))
+        for shape in shapes_by_price(scans)
+    ]
+
+
+def shapes_shifted(scans):
+    """Cells of 2 cm, read at their corner: 1 cm off in x and in y."""
+    return [shape.moved((-0.01, -0.01)) for shape in shapes_by_price(scans)]
+
+
+def shapes_in_robot_frame(scans):
+    """Forgets the headings; on the board as it is they are all alike."""
+    straight = scans.poses * np.array([1.0, 1.0, 0.0])
+    return shapes_by_price(pk.Scans(straight, scans.angles, scans.ranges, scans.inside))
+
+
+def shapes_ready_made(scans):
+    """The library's own pipeline, which is not allowed here."""
+    return [found.shape for found in ready_made(groups_of(scans)[0], rng=0)]
+
+
+# --- measure_pillars ---------------------------------------------------------------------------------------
+
+
+def pillars_by_tree(poses, angles, ranges, range_max):
+    """Chains of neighbours by a tree, and circles by least squares."""
+    bearing = poses[:, 2:] + angles
+    places = np.stack([poses[:, :1] + ranges * np.cos(bearing), poses[:, 1:2] + ranges * np.sin(bearing)], axis=-1)
+    points, found = places[ranges < range_max], []
+    open_points = set(range(len(points)))
+    tree = cKDTree(points)
+    while open_points:
+        chain, ahead = set(), [open_points.pop()]
+        while ahead:
+            k = ahead.pop()
+            chain.add(k)
+            near = set(tree.query_ball_point(points[k], 0.03)) & open_points
+            open_points -= near
+            ahead += near
+        own = points[sorted(chain)]
+        start = (*own.mean(axis=0), 0.06)
+        found.append(least_squares(lambda q, own=own: np.hypot(*(own - q[:2]).T) - q[2], start).x)
+    return found
+
+
+def pillars_by_kasa(poses, angles, ranges, range_max):
+    read = np.where(ranges < range_max, ranges, np.inf)
+    points = pk.Scans(poses, angles, read, np.zeros(len(poses), dtype=bool)).points()
+    labels, rows = pk.link(points), []
+    for label in np.unique(labels[labels >= 0]):
+        x, y = points[labels == label].T
+        a, b, k = np.linalg.lstsq(np.column_stack([2 * x, 2 * y, np.ones(len(x))]), x * x + y * y, rcond=None)[0]
+        rows.append((a, b, math.sqrt(k + a * a + b * b)))
+    return np.array(rows)
+
+
+def pillars_general(poses, angles, ranges, range_max, limit=False, heading=False, mean=False):
+    """The function as it is given, with some of its bugs mended."""
+    points = []
+    for (x, y, turn), row in zip(poses, ranges, strict=True):
+        for angle, distance in zip(angles, row, strict=True):
+            if distance < range_max or limit:
+                bearing = angle - turn if heading else angle + turn
+                points.append((x + distance * np.cos(bearing), y + distance * np.sin(bearing)))
+    points = np.array(points)
+    labels, found = pk.link(points), []
+    for label in range(labels.max() + 1):
+        own = points[labels == label]
+        x, y = own.mean(axis=0)
+        r = np.hypot(*(own - (x, y)).T).mean()
+        if not mean:
+            circle = pk.fit_circle(own)
+            (x, y), r = circle.center, circle.radius
+        found.append((x, y, r))
+    return np.array(found)
+
+
+def pillars_untouched(poses, angles, ranges, range_max):
+    return pillars_general(poses, angles, ranges, range_max, limit=True, heading=True, mean=True)
+
+
+def pillars_heading_left(poses, angles, ranges, range_max):
+    return pillars_general(poses, angles, ranges, range_max, heading=True)
+
+
+def pillars_limit_left(poses, angles, ranges, range_max):
+    return pillars_general(poses, angles, ranges, range_max, limit=True)
+
+
+def pillars_mean_left(poses, angles, ranges, range_max):
+    return pillars_general(poses, angles, ranges, range_max, mean=True)
+
+
+def pillars_heading_mended(poses, angles, ranges, range_max):
+    return pillars_general(poses, angles, ranges, range_max, limit=True, mean=True)
+
+
+def pillars_limit_mended(poses, angles, ranges, range_max):
+    return pillars_general(poses, angles, ranges, range_max, heading=True, mean=True)
+
+
+def pillars_mean_mended(poses, angles, ranges, range_max):
+    return pillars_general(poses, angles, ranges, range_max, limit=True, heading=True)
+
+
+def pillars_widest(poses, angles, ranges, range_max):
+    """Half of the widest extent for the radius, and the middle of the extents for the centre."""
+    read = np.where(ranges < range_max, ranges, np.inf)
+    points = pk.Scans(poses, angles, read, np.zeros(len(poses), dtype=bool)).points()
+    labels = pk.link(points)
+    groups = [points[labels == label] for label in range(labels.max() + 1)]
+    return [(*((own.min(axis=0) + own.max(axis=0)) / 2), np.ptp(own, axis=0).max() / 2) for own in groups]
+
+
+# Each wrong answer with the points that it gets of the task's nine, or seven, and the short name of its fault.
+ANSWERS = {
+    "my_shapes": {
+        "right": {"price": shapes_by_price, "lines": shapes_by_lines, "hull": shapes_by_hull},
+        "wrong": {
+            "circles": (shapes_circles, 5, "everything is a circle"),
+            "boxes": (shapes_boxes, 3, "boxes around the shapes"),
+            "one missing": (shapes_one_missing, 3, "shapes lost"),
+            "split": (shapes_split, 1, "groups fall apart"),
+            "one corner more": (shapes_corner_more, 7, "sides miscounted"),
+            "too large": (shapes_large, 7, None),
+            "shifted": (shapes_shifted, 8, None),
+            "headings forgotten": (shapes_in_robot_frame, 1, "right in one frame only"),
+            "ready-made": (shapes_ready_made, 1, "raises RuntimeError"),
+        },
+    },
+    "measure_pillars": {
+        "right": {"tree": pillars_by_tree, "kasa": pillars_by_kasa},
+        "wrong": {
+            "untouched": (pillars_untouched, 0, "heading subtracted"),
+            "heading left": (pillars_heading_left, 4, "heading subtracted"),
+            "limit left": (pillars_limit_left, 5, "limit taken for a hit"),
+            "mean left": (pillars_mean_left, 5, "mean taken for the centre"),
+            "heading mended": (pillars_heading_mended, 3, "limit taken for a hit"),
+            "limit mended": (pillars_limit_mended, 2, "heading subtracted"),
+            "mean mended": (pillars_mean_mended, 2, "limit taken for a hit"),
+            "widest": (pillars_widest, 5, None),
+        },
+    },
+}
