@@ -16,6 +16,7 @@ class Picture {
     const width = this.canvas.clientWidth, sharp = window.devicePixelRatio || 1;
     const side = Math.round(width * sharp);
     if (this.canvas.width !== side) this.canvas.width = this.canvas.height = side;
+    this.pen.save(); // so that no picture depends on the one before
     this.pen.setTransform(sharp, 0, 0, sharp, 0, 0);
     this.pen.clearRect(0, 0, width, width);
     this.low = 40; // px: room for the scales, left of the board and below it
@@ -32,6 +33,7 @@ class Picture {
     known.shapes.forEach((shape) => this.outline(shape, look));
     this.robot(pose, board, look);
     this.labels(known.shapes, look);
+    this.pen.restore();
   }
 
   at([x, y]) {

@@ -12,7 +12,7 @@ Replay: 2 scans in 0.1 s, 0 shapes found
 >>> player.close()
 
 The shapes are those that would have been found on the way: they are looked for each time that the map has grown by a
-tenth, and once more in the end.
+fifth, and once more in the end.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from .sketch import FAR, Message, board_and_look, drawn, page, ring_of, tenths
 
 Ints = NDArray[np.int64]
 
-GROWN = 1.1  # so many times the cells are worth another look
+GROWN = 1.2  # so many times the cells are worth another look
 NO_HIT = -1
 FARTHEST = 32_767  # tenths of a millimetre: ranges go to the page as whole numbers of 16 bits
 

@@ -115,6 +115,7 @@ function render({ model, el }) {
     parts.canvas.setAttribute("aria-label", `The board: ${names}.`);
     parts.root.dataset.scans = known.scans; // what is drawn now
     parts.root.dataset.pose = (known.pose ?? []).join(" ");
+    parts.root.dataset.busy = clock.busy; // whether shapes are looked for still
   };
   const soon = () => (due ||= requestAnimationFrame(show));
 

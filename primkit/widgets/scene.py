@@ -246,8 +246,9 @@ class Scene(anywidget.AnyWidget):
             return {"say": f"The robot cannot drive by itself here: {type(error).__name__}: {error}"}
         places = {run.name: tenths(run.way) for run in automatic}
         runs = Comparison((self.state.by_hand(), *automatic))
+        say = {} if self._compared else {"say": "The robot has driven by itself, too: see the table."}
         self._compared = {"table": runs.texts(), "places": places}
-        return {"automatic": self._compared}
+        return {"automatic": self._compared} | say
 
     def close(self) -> None:
         """Take the scene from the page, close the journal, and end the work beside the drive."""

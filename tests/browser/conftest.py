@@ -35,13 +35,30 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="package")
-def context(browser, folder):
-    """The browser with Jupyter's address as its home."""
+def address(folder):
+    """Where Jupyter answers."""
     with jupyter(folder) as address:
-        context = browser.new_context(base_url=address, viewport={"width": 1280, "height": 1000})
-        context.set_default_timeout(30_000)
-        yield context
-        context.close()
+        yield address
+
+
+@pytest.fixture(scope="package")
+def context(browser, address):
+    """The browser with Jupyter's address as its home."""
+    context = browser.new_context(base_url=address, viewport={"width": 1280, "height": 1000})
+    context.set_default_timeout(30_000)
+    yield context
+    context.close()
+
+
+@pytest.fixture(scope="package")
+def phone(browser, address):
+    """A browser as small as a phone's, with a screen to touch."""
+    context = browser.new_context(
+        base_url=address, viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True
+    )
+    context.set_default_timeout(30_000)
+    yield context
+    context.close()
 
 
 @pytest.fixture(scope="package")

@@ -5,12 +5,18 @@ import json
 import numpy as np
 import pytest
 
-from .lab import TOKEN, opened
+from .lab import TOKEN, enter, opened
 
 NAME = "scene"
 CELLS = [
     "import primkit as pk\npk.drive_scene(pk.random_world(4, rng=7))",
     "'a cell that must stay'",
+]
+MOVING = ["import primkit as pk\npk.drive_scene(pk.random_world(4, rng=7), pk.Lidar(noise_std=0.002), moving=True)"]
+FILM = [
+    "import numpy as np, primkit as pk\nworld = pk.random_world(4, rng=7)",
+    "poses = pk.drive(world, [(6, 4)] * 60)\ndrive = pk.Drive(pk.scan(world, poses), np.zeros((61, 2)))",
+    "pk.replay(drive, world)",
 ]
 PRESSES = 20  # measured key presses
 LONGEST = 60  # looks at a robot that shall come to rest
@@ -29,10 +35,10 @@ WATCH = """(root) => {
 }"""
 
 
-def notebook():
-    """Return a notebook with a scene, and a cell after it, as text."""
+def notebook(sources=CELLS):
+    """Return a notebook as text: with a scene, and a cell after it."""
     blank = {"cell_type": "code", "metadata": {}, "outputs": [], "execution_count": None}
-    cells = [blank | {"id": f"cell-{number}", "source": source} for number, source in enumerate(CELLS)]
+    cells = [blank | {"id": f"cell-{number}", "source": source} for number, source in enumerate(sources)]
     python = {"kernelspec": {"name": "python3", "display_name": "Python 3"}}
     return json.dumps({"nbformat": 4, "nbformat_minor": 5, "metadata": python, "cells": cells})
 
@@ -87,11 +93,9 @@ class Seat:
                 return before
         return pytest.fail("the robot does not stop")
 
-    def start_over(self):
-        self.stands()
-        self.button("Back to the start").click()
-        self.page.wait_for_function("document.querySelector('.primkit-scene').dataset.scans === '1'")
-        self.root.locator("canvas").click()
+    def rests(self):
+        """Wait until no more shapes are looked for."""
+        self.page.wait_for_function("document.querySelector('.primkit-scene').dataset.busy === 'false'")
 
 
 @pytest.fixture(scope="module")
@@ -108,9 +112,13 @@ def seat_in_lab(lesson):
 
 
 @pytest.fixture
-def seat(seat_in_lab):
+def seat(seat_in_lab, lesson):
     """The driver's seat, at the start, with the focus."""
-    seat_in_lab.start_over()
+    seat_in_lab.stands()
+    seat_in_lab.button("Back to the start").click()
+    lesson.settle()
+    seat_in_lab.rests()
+    seat_in_lab.root.locator("canvas").click()
     return seat_in_lab
 
 
@@ -156,7 +164,10 @@ def test_the_map_grows_and_shapes_get_their_names(seat, screenshots):
     assert seat.root.locator("p.says[aria-live=polite]").inner_text()
     seat.button("What have I not seen yet?").click()
     seat.button("Compare: automatic").click()
-    seat.root.locator("p.automatic", has_text="way-points").wait_for()
+    table = seat.root.locator("div.automatic table")
+    table.wait_for()
+    assert table.locator("tr").all_inner_texts()[0].split() == ["scans", "robot", "time", "found", "score"]
+    assert table.locator("th:first-child").all_inner_texts()[1:] == ["by hand", "way-points", "explore"]
     if screenshots:
         for width in (WIDE, NARROW):
             seat.page.set_viewport_size({"width": width, "height": 1000})
@@ -189,16 +200,55 @@ def test_tab_leaves_to_the_buttons_and_on(seat):
     assert seat.pose[0] > before[0]
 
 
+def texts_in(page):
+    return page.locator(".jp-Notebook .jp-CodeCell .cm-content").all_inner_texts()
+
+
+def harm(page, keys):
+    """Press keys where one drives; tell whether a cell is gone, new, or another."""
+    texts = texts_in(page)
+    for key in keys:
+        page.keyboard.press(key)
+    page.wait_for_timeout(1500)  # ms: so long Lab waits for the second of two keys
+    return texts_in(page) != texts
+
+
 @pytest.mark.parametrize("keys", ["dd", "aabb", "xx", "zz", "mm11", "ii00"])
 def test_no_key_harms_a_cell(seat, keys):
-    texts = seat.page.locator(".jp-Notebook .jp-CodeCell .cm-content").all_inner_texts()
-    for key in keys:
-        seat.page.keyboard.press(key)
+    assert not harm(seat.page, keys)
     seat.page.keyboard.press("Shift+Enter")
     seat.stands()
-    assert seat.page.locator(".jp-Notebook .jp-CodeCell .cm-content").all_inner_texts() == texts
     assert cells_in(seat.page) == len(CELLS)
     assert seat.page.locator(".jp-Dialog").count() == 0
+
+
+# Takes from the scene what keeps its keys from Lab: the sign for Lab, and that it lets no key go on as unused.
+UNGUARD = """(root) => {
+    root.removeAttribute("data-lm-suppress-shortcuts");
+    root.addEventListener("keydown", (event) => {
+        event.stopPropagation = event.preventDefault = () => {};
+    }, { capture: true });
+}"""
+
+
+@pytest.fixture
+def another_lab(context, folder):
+    """A page of its own: what is harmed there is seen by nobody else."""
+    (folder / "notebooks" / "unguarded.ipynb").write_text(notebook())
+    page = context.new_page()
+    enter(page)
+    with opened(page, "unguarded", 0) as lesson:
+        yield lesson.page
+    page.close()
+
+
+@pytest.mark.parametrize("keys", ["dd", "aabb", "xx"])
+def test_without_its_guards_the_same_keys_harm_a_cell(another_lab, keys):
+    """The trap is there, and the test above sees it."""
+    seat = Seat(another_lab)
+    seat.root.locator("canvas").click()
+    seat.root.evaluate(UNGUARD)
+    assert harm(another_lab, keys)
 
 
 def test_buttons_drive_with_the_mouse(seat):
@@ -258,14 +308,138 @@ def test_the_kernel_has_nothing_to_complain_of(lesson, seat):
     assert lesson.said() == []
 
 
-@pytest.mark.usefixtures("lesson")
-def test_it_opens_in_voila(context, screenshots):
+def in_voila(context, folder, name, sources):
+    """Open a notebook as a page without code."""
+    (folder / "notebooks" / f"{name}.ipynb").write_text(notebook(sources))
     page = context.new_page()
-    page.goto(f"/voila/render/{NAME}.ipynb?token={TOKEN}", timeout=60_000)
+    page.goto(f"/voila/render/{name}.ipynb?token={TOKEN}", timeout=60_000)
+    return page
+
+
+def test_it_opens_in_voila(context, folder, screenshots):
+    page = in_voila(context, folder, "scene_page", CELLS)
     seat = Seat(page)
     seat.root.locator("canvas").click()
     seat.hold(["w"], 4)
     assert seat.pose[0] > 0.02
     if screenshots:
         page.screenshot(path=screenshots / "scene_voila.png", full_page=True)
+    page.close()
+
+
+@pytest.fixture(scope="module")
+def touched(phone, folder):
+    """The scene on a screen that is touched."""
+    page = in_voila(phone, folder, "touched", CELLS)
+    yield Seat(page)
+    page.close()
+
+
+@pytest.fixture
+def finger(touched):
+    """Puts a finger down on a button, or takes it away."""
+    session = touched.page.context.new_cdp_session(touched.page)
+
+    def touch(kind, name=None):
+        points = []
+        if name:
+            touched.button(name).scroll_into_view_if_needed()
+            box = touched.button(name).bounding_box()
+            points = [{"x": box["x"] + box["width"] / 2, "y": box["y"] + box["height"] / 2}]
+        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    return touch
+
+
+def test_a_touch_is_a_step(touched, screenshots):
+    for number, (name, place) in enumerate([("forward", 0), ("left", 2)], start=1):
+        before = touched.pose
+        touched.button(name).tap()
+        assert touched.stands() <= 2 * number + 1
+        assert touched.pose[place] > before[place]
+    if screenshots:
+        touched.page.screenshot(path=screenshots / "scene_touch.png", full_page=True)
+
+
+@pytest.mark.parametrize("end", ["touchEnd", "touchCancel"])
+def test_a_finger_drives_while_it_stays(touched, finger, end):
+    before, scans = touched.pose, touched.scans
+    finger("touchStart", "back")
+    touched.after(scans + 5)
+    finger(end)
+    touched.stands()
+    assert np.hypot(*(touched.pose - before)[:2]) > 0.04
+
+
+def test_a_thing_is_moved_while_noise_keeps_the_kernel_busy(context, folder, screenshots):
+    page = in_voila(context, folder, "moving", MOVING)
+    seat = Seat(page)
+    seat.root.locator("canvas").click()
+    seat.hold(["w", "d"], 30)
+    seat.button("Show the truth").click()
+    before = seat.picture()
+    seat.button("Move something").click()
+    seat.root.locator("p.says", has_text="Somebody has moved a shape").wait_for()
+    page.wait_for_timeout(300)
+    assert seat.picture() != before
+    seat.hold(["w"], 10)
+    seat.rests()
+    assert "old" not in seat.score
+    if screenshots:
+        seat.root.screenshot(path=screenshots / "scene_moving.png")
+    page.close()
+
+
+def test_nothing_is_moved_where_things_stand_still(seat):
+    assert seat.button("Move something").count() == 0
+
+
+class Player:
+    """A film in a page."""
+
+    def __init__(self, page) -> None:
+        self.page, self.root = page, page.locator(".primkit-scene.replay")
+        page.wait_for_function("document.querySelector('.primkit-scene.replay')?.dataset.scan === '0'")
+
+    @property
+    def scan(self):
+        return int(self.root.get_attribute("data-scan"))
+
+    def at(self, scan):
+        self.page.wait_for_function(
+            "(n) => +document.querySelector('.primkit-scene.replay').dataset.scan === n", arg=scan
+        )
+
+    def picture(self):
+        return self.root.locator("canvas").evaluate("(canvas) => canvas.toDataURL()")
+
+
+def test_a_film_plays_stops_and_goes_where_the_slider_says(context, folder, screenshots):
+    page = in_voila(context, folder, "film", FILM)
+    player = Player(page)
+    page.wait_for_timeout(500)  # ms: until the page has its width
+    first = player.picture()
+    button = player.root.locator("button.play")
+    button.click()
+    page.wait_for_function("document.querySelector('.primkit-scene.replay').dataset.scan > 8")
+    button.click()
+    stopped = player.scan
+    page.wait_for_timeout(500)
+    assert player.scan == stopped < 60
+    assert player.picture() != first
+    player.root.locator("input").press("End")
+    player.at(60)
+    assert "61 scans" in player.root.locator(".score").inner_text()
+    player.root.locator("input").press("Home")
+    player.at(0)
+    assert player.picture() == first
+    player.root.locator("button.speed").click()
+    button.click()
+    player.at(60)
+    if screenshots:
+        player.root.locator("button.truth").click()
+        for width in (WIDE, NARROW):
+            page.set_viewport_size({"width": width, "height": 1000})
+            page.wait_for_timeout(300)
+            player.root.screenshot(path=screenshots / f"film_{width}.png")
     page.close()
