@@ -111,8 +111,9 @@ def _words(text: str) -> str:
 
 def _finding(name: str, students: int, parts: Sequence[Part]) -> str:
     """Return the title: the hardest part, and what went wrong in it."""
-    task, part, right, (fault, times) = min(parts, key=lambda row: row[2])
+    asked = [row for row in parts if row[1]] or parts  # parts of hidden tests, where there are any
+    task, part, right, (fault, times) = min(asked, key=lambda row: row[2])
     if right == 1:
         return f"{name}: all of {count(students, 'student')} have all of it right"
-    hardest = f"{name}: {task}{f', {part}' if part else ''}, is hardest: {100 * right:.0f} % right"
+    hardest = f"{name}: hardest is {task}{f', {part}' if part else ''}: {100 * right:.0f} % right"
     return f"{hardest}; most often: {_short(fault)}" if times else hardest
