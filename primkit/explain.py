@@ -75,7 +75,7 @@ def candidates(
     while waiting and waiting[0].cost <= min((c.cost for c in done), default=np.inf) + CONTENDER:
         polished = _polished(local, waiting.pop(0), spread, soft)
         done += [] if polished is None else [polished]
-    return [_moved(c, middle) for c in sorted(done + waiting, key=lambda c: c.cost)]
+    return [moved(c, middle) for c in sorted(done + waiting, key=lambda c: c.cost)]
 
 
 def explained_again(
@@ -96,9 +96,9 @@ def explained_again(
     """
     middle, shapes = points.mean(axis=0), [c for c in before if c.figure is not None]
     rivals = [next((c for c in shapes if c.kind != shapes[0].kind), None)] if shapes else []
-    kept = [_moved(c, -middle) for c in (*shapes[:1], *rivals) if c is not None]
+    kept = [moved(c, -middle) for c in (*shapes[:1], *rivals) if c is not None]
     again = [_polished(points - middle, c, spread, soft) for c in kept]
-    return [_moved(c, middle) for c in sorted((c for c in again if c is not None), key=lambda c: c.cost)]
+    return [moved(c, middle) for c in sorted((c for c in again if c is not None), key=lambda c: c.cost)]
 
 
 def _rough(points: Floats, spread: float, rng: np.random.Generator) -> list[Candidate]:
@@ -151,17 +151,24 @@ def _refined(points: Floats, guess: Outlines, spread: float, *, square: bool) ->
 
 def _polished(points: Floats, rough: Candidate, spread: float, soft: bool) -> Candidate | None:
     """Fit a candidate to the last digit; None for a circle that is none."""
-    figure = rough.figure
+    if rough.figure is None:
+        return rough
+    done = polished(points, rough.figure, spread, soft=soft, square=rough.square)
+    return rough if done is None and isinstance(rough.figure, Outlines) else done
+
+
+def polished(
+    points: Floats, figure: Circle | Outlines, spread: float, *, soft: bool = True, square: bool = False
+) -> Candidate | None:
+    """Return a figure near its solution, fitted to the last digit and judged; None where that leads nowhere."""
     if isinstance(figure, Circle):
         circle = _polished_circle(points, figure, spread)
         return None if circle is None else _unless_short(judged(points, circle, spread), circle)
-    if figure is None:
-        return rough
     if soft:
-        refined = refine_soft(points, figure, spread, square=rough.square)
+        refined = refine_soft(points, figure, spread, square=square)
     else:
-        refined = refine_hard(points, figure, SIGMAS * spread, square=rough.square)
-    return judged(points, refined, spread, square=rough.square) if refined.sound()[0] else rough
+        refined = refine_hard(points, figure, SIGMAS * spread, square=square)
+    return judged(points, refined, spread, square=square) if refined.sound()[0] else None
 
 
 def _length_along(points: Floats, line: Line, reach: float) -> float:
@@ -188,8 +195,8 @@ def _polished_circle(points: Floats, circle: Circle, spread: float) -> Circle | 
     return circle
 
 
-def _moved(candidate: Candidate, offset: Floats) -> Candidate:
-    """Return the candidate, shifted back to where its points are."""
+def moved(candidate: Candidate, offset: Floats) -> Candidate:
+    """Return the candidate, shifted by ``offset``, shape (2,), metres."""
     figure = candidate.figure
     if isinstance(figure, (Circle, Outlines)):
         figure = figure.moved(offset)

@@ -1,0 +1,125 @@
+"""Pieces: an outline that was seen all around, cut into straight pieces in the best of all ways.
+
+Points around a middle have an order: their bearings. In that order each side is one stretch, and a polygon is a choice
+of cuts between stretches. All choices are compared, none is drawn at random: the sums of squares of all stretches come
+from running sums, and the best k of them from the best k - 1, which is dynamic programming.
+
+In:  points of one closed outline, shape (N, 2), metres, around the origin.
+Out: a ``Cut`` for each number of sides: the outline, and how well the pieces fit.
+
+>>> from primkit.shapes import Polygon
+>>> ring = Polygon([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)]).outline(80)
+>>> best = best_cuts(ring)
+>>> [k for k in best if best[k].squares < 1e-12], best[4].outline.polygon().kind
+([4, 5], 'rectangle')
+
+Source: Bellman (1961), "On the approximation of curves by line segments using dynamic programming".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .outlines import Outlines, from_angle_order
+
+Floats = NDArray[np.float64]
+
+KNOTS = 72  # places where a cut may be: one for each centimetre of the longest outlines; fits then find the corner
+FEWEST, MOST = 3, 5  # sides
+LEAST_STRETCH = 0.01  # m: two thirds of the shortest side; the rest of it may not have been seen
+
+
+@dataclass(frozen=True, eq=False)
+class Cut:
+    """The best way to cut the points into pieces.
+
+    Parameters
+    ----------
+    outline : Outlines (one row)
+        The pieces' lines; not always ``sound``.
+    squares : float
+        Sum of the squared distances of the points from their piece's line, square metres. The pieces need not meet in
+        corners, nor bend: up to where the cuts may lie, no outline with so many sides comes closer to the points.
+    """
+
+    outline: Outlines
+    squares: float
+
+
+def best_cuts(points: Floats) -> dict[int, Cut]:
+    """Return the best cut for three, four and five sides, as far as there is one.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        Metres, around the origin, at least as many as a pentagon has ends of sides. The first cut lies at the point
+        that is farthest from the origin: of a polygon, that is a corner.
+    """
+    points = _from_farthest_corner(points)
+    knots = np.linspace(0, len(points), min(KNOTS, len(points)) + 1).astype(int)
+    moments = _moments_between(points, knots)
+    squares = np.where(_long_enough(points, knots), _squares(moments), np.inf)
+    best, last_cuts, cuts = squares[0], [], {}
+    for k in range(2, MOST + 1):  # best[j]: the least squares from the first knot to knot j in k - 1 pieces
+        longer = best[:, None] + squares
+        last_cuts.append(longer.argmin(axis=0))
+        best = longer.min(axis=0)
+        if k >= FEWEST and np.isfinite(best[-1]):
+            ends = _traced(last_cuts)
+            cuts[k] = Cut(_lines(moments[:, ends[:-1], ends[1:]]), float(best[-1]))
+    return cuts
+
+
+def _from_farthest_corner(points: Floats) -> Floats:
+    """Return the points in the order of their bearings, the farthest one first."""
+    bearing = np.arctan2(points[:, 1], points[:, 0])
+    first = bearing[(points**2).sum(axis=1).argmax()]
+    return points[np.argsort(np.mod(bearing - first, 2 * np.pi), kind="stable")]
+
+
+def _long_enough(points: Floats, knots: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Tell which stretches, from one knot to another, are as long as a side must be, shape (M, M)."""
+    x, y = points[knots % len(points)].T  # a stretch ends where the next one begins
+    return (x - x[:, None]) ** 2 + (y - y[:, None]) ** 2 >= LEAST_STRETCH**2
+
+
+def _moments_between(points: Floats, knots: NDArray[np.intp]) -> Floats:
+    """Return number and mean sums (1, x, y, xx, yy, xy) of the points between each two knots, shape (6, M, M)."""
+    x, y = points.T
+    sums = np.zeros((6, len(points) + 1))
+    np.cumsum([np.ones_like(x), x, y, x * x, y * y, x * y], axis=1, out=sums[:, 1:])
+    sums = sums[:, knots]
+    return sums[:, None, :] - sums[:, :, None]
+
+
+def _scatter(moments: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return the scatter sums xx, yy and xy about the mean of each stretch."""
+    n, x, y, xx, yy, xy = moments
+    n = np.maximum(n, 1.0)
+    return xx - x * x / n, yy - y * y / n, xy - x * y / n
+
+
+def _squares(moments: Floats) -> Floats:
+    """Return the sum of squared distances from the best line of each stretch; infinite where two points are missing."""
+    xx, yy, xy = _scatter(moments)
+    across = (xx + yy - np.hypot(xx - yy, 2 * xy)) / 2  # the smaller eigenvalue of the scatter matrix
+    return np.where(moments[0] >= 2, np.maximum(across, 0.0), np.inf)
+
+
+def _traced(last_cuts: list[NDArray[np.intp]]) -> list[int]:
+    """Return the knots where pieces end, from the first knot to the last."""
+    ends = [len(last_cuts[0]) - 1]
+    for cut in reversed(last_cuts):
+        ends.append(int(cut[ends[-1]]))
+    return [*ends, 0][::-1]
+
+
+def _lines(moments: Floats) -> Outlines:
+    """Return the best lines of stretches as an outline, their normals away from the origin."""
+    xx, yy, xy = _scatter(moments)
+    angles = 0.5 * np.arctan2(2 * xy, xx - yy) + np.pi / 2  # across the direction of most scatter
+    offsets = (np.cos(angles) * moments[1] + np.sin(angles) * moments[2]) / moments[0]
+    return from_angle_order(np.where(offsets < 0, angles + np.pi, angles)[None], np.abs(offsets)[None])
