@@ -60,6 +60,12 @@ class Choice:
     at_a_glance: bool = False
 
     @cached_property
+    def distance(self) -> Floats:
+        """Signed distances of the points from the chosen shape, shape (N,), metres; infinite without a shape."""
+        shape = self.ranked[0].shape if self.ranked else None
+        return np.full(len(self.points), np.inf) if shape is None else shape.signed_distance(self.points)
+
+    @cached_property
     def margin(self) -> float:
         """How much more the best of another kind costs; rivals that were not fitted are fitted when this is asked."""
         best, rivals = self.ranked[0], self.ranked[1:]
@@ -167,7 +173,7 @@ def as_detection(choice: Choice) -> Detection | None:
     best = choice.ranked[0] if choice.ranked else None
     if best is None or best.figure is None or best.shape is None:  # the last only for the type checker's sake
         return None
-    found = detection(best.shape, points, SIGMAS * spread)
+    found = _with_points_near(best.shape, points, choice.distance, SIGMAS * spread)
     middle = found.points.mean(axis=0)
     sure = certainty(best.figure.moved(-middle), found.points - middle, spread, square=best.square)
     shape = best.shape
@@ -196,8 +202,9 @@ def spread_of(points: ArrayLike) -> float:
     points = as_points(points)
     if len(points) < NEIGHBOURS:
         return LEAST_SPREAD
-    near = points[cKDTree(points).query(points, NEIGHBOURS)[1]]  # (N, NEIGHBOURS, 2)
-    x, y = np.moveaxis(near - near.mean(axis=1, keepdims=True), 2, 0)
+    near = cKDTree(points).query(points, NEIGHBOURS)[1]  # (N, NEIGHBOURS)
+    x, y = points[:, 0][near], points[:, 1][near]
+    x, y = x - x.mean(axis=1, keepdims=True), y - y.mean(axis=1, keepdims=True)
     xx, yy, xy = (x * x).sum(axis=1), (y * y).sum(axis=1), (x * y).sum(axis=1)
     across = (xx + yy - np.hypot(xx - yy, 2 * xy)) / 2  # the smaller eigenvalue of the scatter matrix
     variance = np.maximum(across, 0.0) / (NEIGHBOURS - 2)  # two numbers fix a line
@@ -206,7 +213,11 @@ def spread_of(points: ArrayLike) -> float:
 
 def detection(shape: Shape, points: Floats, reach: float) -> Detection:
     """Return the shape with those of the points that lie within ``reach`` metres of its outline."""
-    distance = shape.signed_distance(points)
+    return _with_points_near(shape, points, shape.signed_distance(points), reach)
+
+
+def _with_points_near(shape: Shape, points: Floats, distance: Floats, reach: float) -> Detection:
+    """Return the shape with those of the points whose distance from it is within ``reach``."""
     on_it = np.abs(distance) <= reach
     rms = float(np.sqrt(np.mean(distance[on_it] ** 2))) if on_it.any() else float("nan")
     return Detection(shape, points[on_it], rms, seen=seen_shares(shape, points[on_it]))

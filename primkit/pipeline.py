@@ -235,7 +235,7 @@ def _in_steps(spread: float) -> float:
 
 def _spread_of_fits(groups: list[Group]) -> float | None:
     """Return how far the points lie from the shapes that explain them; None without shapes."""
-    distances = [g.shape.signed_distance(g.points) for g in groups if g.shape is not None]
+    distances = [g.choice.distance for g in groups if g.shape is not None]
     if not distances:
         return None
     return spread_from_median(float(np.median(np.abs(np.concatenate(distances)))))

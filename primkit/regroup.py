@@ -75,6 +75,8 @@ class Group:
         if shape is None:
             return False
         lengths = shape.sides if isinstance(shape, Polygon) else [shape.perimeter]
+        if np.average(self.ranked[0].seen, weights=lengths) >= CLOSED:  # by those points alone that lie on it
+            return True
         return bool(np.average(seen_shares(shape, self.points), weights=lengths) >= CLOSED)
 
 
@@ -215,9 +217,7 @@ def _halves(group: Group, spread: float, n_shapes: int | None, explain: Explain)
 
 def _share_on_shape(group: Group, spread: float) -> float:
     """Return the share of a group's points that lie on its best shape; none without a shape."""
-    if group.shape is None:
-        return 0.0
-    return float(np.mean(np.abs(group.shape.signed_distance(group.points)) <= SIGMAS * spread))
+    return float(np.mean(np.abs(group.choice.distance) <= SIGMAS * spread))
 
 
 def _merge_all(

@@ -28,6 +28,7 @@ ORDER = (
         "lidar",
         "grid",
         "changes",
+        "linking",
         "segmentation",
         "ransac",
         "lines",
