@@ -100,14 +100,15 @@ def sides_seen(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bo
     r = figure.distances(points)[0]
     t = figure.along(points)[0]
     begin, end = figure.spans()
-    lengths, seen = (end - begin)[0], []
-    for side in range(r.shape[1]):
-        others = np.delete(r, side, axis=1)
-        own = (np.abs(r[:, side]) <= SIGMAS * spread) & (others < -CORNER_SPREADS * spread).all(axis=1)
-        stretch = np.ptp(t[own, side]) if own.any() else 0.0
-        inner = max(lengths[side] - 2 * CORNER_SPREADS * spread, 0.0)
-        seen.append(np.count_nonzero(own) >= LEAST_ON_SIDE and stretch >= max(LEAST_STRETCH, LEAST_SHARE * inner))
-    return np.array(seen)
+    well_inside = r < -CORNER_SPREADS * spread
+    of_no_other = np.count_nonzero(well_inside, axis=1) >= r.shape[1] - 1  # all sides but one, and that is the near one
+    own = (np.abs(r) <= SIGMAS * spread) & of_no_other[:, None]
+    first, last = (
+        np.where(own, t, np.inf).min(axis=0, initial=np.inf),
+        np.where(own, t, -np.inf).max(axis=0, initial=-np.inf),
+    )
+    inner = np.maximum((end - begin)[0] - 2 * CORNER_SPREADS * spread, 0.0)
+    return (own.sum(axis=0) >= LEAST_ON_SIDE) & (last - first >= np.maximum(LEAST_STRETCH, LEAST_SHARE * inner))
 
 
 def _of_circle(circle: Circle, points: Floats) -> Certainty:

@@ -68,6 +68,8 @@ class Candidate:
         How much of the outline was seen, metres.
     n_on : float
         How many of the points lie on it; doubtful ones count in part.
+    seen : tuple of float
+        The share of each side (or of the whole circle) that has points near it; empty for a wall.
     """
 
     figure: Circle | Outlines | None
@@ -75,6 +77,7 @@ class Candidate:
     cost: float
     length: float
     n_on: float
+    seen: tuple[float, ...] = ()
 
     @cached_property
     def shape(self) -> Shape | None:
@@ -121,7 +124,7 @@ def judged(points: Floats, figure: Circle | Outlines, spread: float, *, square: 
     cost += UNSEEN_COST * float(lengths.sum() - length)
     if len(lengths) == 4 and not square:
         cost += CROOKED_COST
-    return Candidate(figure, square, cost, length, on_it)
+    return Candidate(figure, square, cost, length, on_it, seen)
 
 
 def judged_wall(points: Floats, line: Line, length: float, spread: float) -> Candidate:
@@ -129,6 +132,15 @@ def judged_wall(points: Floats, line: Line, length: float, spread: float) -> Can
     on_it, log_likelihood = _along_smooth(line.signed_distance(points), spread)
     cost = _cost(log_likelihood, OF_WALL, len(points), spread) + _length_cost(on_it, length) + UNSEEN_COST * length
     return Candidate(None, False, cost, length, on_it)
+
+
+def price(fitted: Floats, n_points: int, spread: float) -> float:
+    """Return what the fitted numbers cost: each the logarithm of how far the points narrow it down.
+
+    The sum of ln(1 + N w^2 / (v s^2)) over the numbers, with N points, the spread s, the width w of what was known of
+    each number beforehand, ``PRIOR_WIDTH``, and the variance v of each in units of s^2 / N.
+    """
+    return float(np.log1p(n_points * PRIOR_WIDTH**2 / (fitted * spread**2)).sum())
 
 
 def joint_cost(candidates: Sequence[Candidate]) -> float:
@@ -176,13 +188,8 @@ def _along_smooth(distance: Floats, spread: float) -> tuple[float, float]:
 
 
 def _cost(log_likelihood: float, fitted: Floats, n_points: int, spread: float) -> float:
-    """Return -2 times the logarithm of the evidence (Laplace's approximation; MacKay, 1992).
-
-    cost = -2 ln L + sum of ln(1 + N w^2 / (v s^2)) over the fitted numbers, with N points, the spread s, the
-    width w of what was known of each number beforehand, ``PRIOR_WIDTH``, and the variance v of each in units of
-    s^2 / N. A number costs the logarithm of how far the points narrow it down.
-    """
-    return float(-2 * log_likelihood + np.log1p(n_points * PRIOR_WIDTH**2 / (fitted * spread**2)).sum())
+    """Return -2 times the logarithm of the evidence: -2 ln L + price (Laplace's approximation; MacKay, 1992)."""
+    return -2 * log_likelihood + price(fitted, n_points, spread)
 
 
 def _length_cost(n_on: float, length: float) -> float:

@@ -35,6 +35,7 @@ MOST_RADIUS = 0.25  # m: a larger circle than a quarter of the board is a wall
 LEAST_ARC = np.radians(60)  # a shorter arc fits a wide range of circles
 CIRCLE_TRIALS = 100  # with four fifths of the points on the circle, one sample in two is clean
 CIRCLE_ROUNDS = 4  # after two, hardly a point changes its weight
+SETTLED = 1e-7  # m: what moves by less has settled; the next round moves it by a small part of that
 ENOUGH_POINTS = 200  # more do not make a first fit much better, and cost time
 STARTS_KEPT = 5  # of the guesses, those closest to the points are refined
 WIDER = 0.005  # m: guesses are judged with a longer reach than fits, because they still lie beside the points
@@ -75,7 +76,7 @@ def candidates(
     while waiting and waiting[0].cost <= min((c.cost for c in done), default=np.inf) + CONTENDER:
         polished = _polished(local, waiting.pop(0), spread, soft)
         done += [] if polished is None else [polished]
-    return [_moved(c, middle) for c in sorted(done + waiting, key=lambda c: c.cost)]
+    return [moved(c, middle) for c in sorted(done + waiting, key=lambda c: c.cost)]
 
 
 def explained_again(
@@ -94,11 +95,16 @@ def explained_again(
     soft : bool
         Share points between sides.
     """
-    middle, shapes = points.mean(axis=0), [c for c in before if c.figure is not None]
-    rivals = [next((c for c in shapes if c.kind != shapes[0].kind), None)] if shapes else []
-    kept = [_moved(c, -middle) for c in (*shapes[:1], *rivals) if c is not None]
-    again = [_polished(points - middle, c, spread, soft) for c in kept]
-    return [_moved(c, middle) for c in sorted((c for c in again if c is not None), key=lambda c: c.cost)]
+    shapes = [c for c in before if c.figure is not None]
+    kept = shapes[:1] + [c for c in shapes if c.kind != shapes[0].kind][:1]
+    middle = points.mean(axis=0)
+    local, again = points - middle, list[Candidate]()
+    for old in (moved(c, -middle) for c in kept):
+        anew = judged(local, old.figure, spread, square=old.square) if again and old.figure is not None else None
+        if anew is None or anew.cost < again[0].cost + CONTENDER:  # as in ``candidates``: no polish for far rivals
+            anew = _polished(local, old, spread, soft)
+        again += [] if anew is None else [anew]
+    return [moved(c, middle) for c in sorted(again, key=lambda c: c.cost)]
 
 
 def _rough(points: Floats, spread: float, rng: np.random.Generator) -> list[Candidate]:
@@ -126,23 +132,23 @@ def _polygons(points: Floats, lines: list[Line], spread: float) -> Iterator[tupl
         if fewer is not None:
             guess = joined(guess, one_side_more(points, fewer))
         if k == 4:
-            upright = _refined(points, guess_rectangles(points, sides, guess), spread, square=True)
+            upright = refined(points, guess_rectangles(points, sides, guess), spread, square=True)
             if upright is not None:
                 yield upright, True
-        fewer = _refined(points, guess, spread, square=False)
+        fewer = refined(points, guess, spread, square=False)
         if fewer is not None:
             yield fewer, False
 
 
-def _refined(points: Floats, guess: Outlines, spread: float, *, square: bool) -> Outlines | None:
+def refined(points: Floats, guess: Outlines, spread: float, *, square: bool) -> Outlines | None:
     """Refine the guesses that lie closest to the points, and return the best one; None without a sound one."""
     reach = SIGMAS * spread
     near = guess[np.argsort(truncated_cost(points, guess, reach + WIDER), kind="stable")]
-    refined = refine_hard(points, near[:STARTS_KEPT], reach, square=square)
-    refined = refined[refined.sound()]
-    if len(refined):
-        best = int(np.argmin(truncated_cost(points, refined, reach)))
-        return refined[best : best + 1]
+    fits = refine_hard(points, near[:STARTS_KEPT], reach, square=square)
+    fits = fits[fits.sound()]
+    if len(fits):
+        best = int(np.argmin(truncated_cost(points, fits, reach)))
+        return fits[best : best + 1]
     sound = near[near.sound()]
     if spread < BLURRED or len(sound) == 0:
         return None
@@ -151,17 +157,24 @@ def _refined(points: Floats, guess: Outlines, spread: float, *, square: bool) ->
 
 def _polished(points: Floats, rough: Candidate, spread: float, soft: bool) -> Candidate | None:
     """Fit a candidate to the last digit; None for a circle that is none."""
-    figure = rough.figure
+    if rough.figure is None:
+        return rough
+    done = polished(points, rough.figure, spread, soft=soft, square=rough.square)
+    return rough if done is None and isinstance(rough.figure, Outlines) else done
+
+
+def polished(
+    points: Floats, figure: Circle | Outlines, spread: float, *, soft: bool = True, square: bool = False
+) -> Candidate | None:
+    """Return a figure near its solution, fitted to the last digit and judged; None where that leads nowhere."""
     if isinstance(figure, Circle):
         circle = _polished_circle(points, figure, spread)
         return None if circle is None else _unless_short(judged(points, circle, spread), circle)
-    if figure is None:
-        return rough
     if soft:
-        refined = refine_soft(points, figure, spread, square=rough.square)
+        fit = refine_soft(points, figure, spread, square=square)
     else:
-        refined = refine_hard(points, figure, SIGMAS * spread, square=rough.square)
-    return judged(points, refined, spread, square=rough.square) if refined.sound()[0] else rough
+        fit = refine_hard(points, figure, SIGMAS * spread, square=square)
+    return judged(points, fit, spread, square=square) if fit.sound()[0] else None
 
 
 def _length_along(points: Floats, line: Line, reach: float) -> float:
@@ -184,12 +197,15 @@ def _polished_circle(points: Floats, circle: Circle, spread: float) -> Circle | 
         fitted = fit_circle(points, weights=told * density / (density + NOWHERE))
         if fitted is None or fitted.radius > MOST_RADIUS:
             return None
+        change = max(abs(fitted.radius - circle.radius), *np.abs(fitted.center - circle.center).tolist())
         circle = fitted
+        if change <= SETTLED:
+            break
     return circle
 
 
-def _moved(candidate: Candidate, offset: Floats) -> Candidate:
-    """Return the candidate, shifted back to where its points are."""
+def moved(candidate: Candidate, offset: Floats) -> Candidate:
+    """Return the candidate, shifted by ``offset``, shape (2,), metres."""
     figure = candidate.figure
     if isinstance(figure, (Circle, Outlines)):
         figure = figure.moved(offset)

@@ -13,7 +13,8 @@ Out: ``Detection``: the shape, its points, how closely they lie to it, and how c
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,6 +33,48 @@ NEIGHBOURS = 10  # enough for a line with its spread, few enough for a curve to 
 
 
 @dataclass(frozen=True, eq=False)
+class Choice:
+    """How a shape was chosen for the points of a cluster: it knows how clear the choice was.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        All points of the cluster, metres.
+    ranked : list of Candidate
+        The explanations that were fitted, the best first.
+    spread : float
+        Standard deviation of the points from the outline, metres.
+    seed : int
+        Seed for the RANSAC stages; None for another one each time.
+    soft : bool
+        Whether points were shared between sides.
+    at_a_glance : bool
+        Whether the best explanation was beyond doubt, and its rivals were not fitted.
+    """
+
+    points: Floats
+    ranked: list[Candidate]
+    spread: float
+    seed: int | None = None
+    soft: bool = True
+    at_a_glance: bool = False
+
+    @cached_property
+    def distance(self) -> Floats:
+        """Signed distances of the points from the chosen shape, shape (N,), metres; infinite without a shape."""
+        shape = self.ranked[0].shape if self.ranked else None
+        return np.full(len(self.points), np.inf) if shape is None else shape.signed_distance(self.points)
+
+    @cached_property
+    def margin(self) -> float:
+        """How much more the best of another kind costs; rivals that were not fitted are fitted when this is asked."""
+        best, rivals = self.ranked[0], self.ranked[1:]
+        if self.at_a_glance:
+            rivals = candidates(self.points, self.spread, soft=self.soft, rng=self.seed)
+        return next((other.cost for other in rivals if other.kind != best.kind), float("inf")) - best.cost
+
+
+@dataclass(frozen=True, eq=False)
 class Detection:
     """A shape that was found.
 
@@ -43,14 +86,10 @@ class Detection:
         The points that lie on it, metres.
     rms : float
         Root mean square distance of those points from the outline, metres.
-    margin : float
-        How much better this shape explains the points than the best of another kind: twice the logarithm
-        of the Bayes factor; above 10 is very strong (Kass and Raftery, 1995). Infinite without a rival; NaN
-        from ``PAPER``, which does not ask. So is the next.
     count_margin : float
         How clear it is that this is one shape of its own: how much better that explains the points than the
-        best grouping in which it is split, or merged with a neighbour, on the same scale. Infinite when no
-        other grouping came into question.
+        best grouping in which it is split, or merged with a neighbour, on the scale of ``margin``. Infinite when no
+        other grouping came into question; NaN from ``PAPER``, which does not ask.
     seen : tuple of float
         The share of each side (or of the whole circle) that has points near it, 0 to 1.
     center_std : tuple of float
@@ -59,16 +98,28 @@ class Detection:
     dimension_std : tuple of float
         Standard deviation of each of ``shape.dimensions``, metres; infinite for one that was not measured,
         because a side that it hangs on was never seen, or that is not even known to a centimetre.
+    choice : Choice, optional
+        How the shape was chosen; None from ``PAPER``.
     """
 
     shape: Shape
     points: Floats
     rms: float
-    margin: float = float("nan")
     count_margin: float = float("nan")
     seen: tuple[float, ...] = ()
     center_std: tuple[float, ...] = ()
     dimension_std: tuple[float, ...] = ()
+    choice: Choice | None = field(default=None, repr=False)
+
+    @property
+    def margin(self) -> float:
+        """How much better this shape explains the points than the best of another kind.
+
+        Twice the logarithm of the Bayes factor; above 10 is very strong (Kass and Raftery, 1995). Infinite without a
+        rival; NaN from ``PAPER``, which does not ask. Where the shape was beyond doubt at a glance, its rivals are
+        fitted now, when the margin is asked for: some 10 ms, once.
+        """
+        return float("nan") if self.choice is None else self.choice.margin
 
     @property
     def kind(self) -> Kind:
@@ -113,24 +164,22 @@ def measure_shape(
     True
     """
     points, spread = as_points(points), max(LEAST_SPREAD, as_positive(spread, "spread", zero=True))
-    return as_detection(points, candidates(points, spread, rng=rng), spread)
+    return as_detection(Choice(points, candidates(points, spread, rng=rng), spread))
 
 
-def as_detection(points: Floats, ranked: list[Candidate], spread: float) -> Detection | None:
+def as_detection(choice: Choice) -> Detection | None:
     """Return the best candidate with those of the points that lie on it; None when it is no shape."""
-    best = ranked[0] if ranked else None
+    points, spread = choice.points, choice.spread
+    best = choice.ranked[0] if choice.ranked else None
     if best is None or best.figure is None or best.shape is None:  # the last only for the type checker's sake
         return None
-    rival = next((other.cost for other in ranked if other.kind != best.kind), float("inf"))
-    found = detection(best.shape, points, SIGMAS * spread)
+    found = _with_points_near(best.shape, points, choice.distance, SIGMAS * spread)
     middle = found.points.mean(axis=0)
     sure = certainty(best.figure.moved(-middle), found.points - middle, spread, square=best.square)
     shape = best.shape
     if isinstance(shape, Circle):
         shape = straightened(shape, found.points, noise_of(spread), found.seen[0])
-    return replace(
-        found, shape=shape, margin=rival - best.cost, center_std=sure.center_std, dimension_std=sure.dimension_std
-    )
+    return replace(found, shape=shape, center_std=sure.center_std, dimension_std=sure.dimension_std, choice=choice)
 
 
 def spread_of(points: ArrayLike) -> float:
@@ -153,8 +202,9 @@ def spread_of(points: ArrayLike) -> float:
     points = as_points(points)
     if len(points) < NEIGHBOURS:
         return LEAST_SPREAD
-    near = points[cKDTree(points).query(points, NEIGHBOURS)[1]]  # (N, NEIGHBOURS, 2)
-    x, y = np.moveaxis(near - near.mean(axis=1, keepdims=True), 2, 0)
+    near = cKDTree(points).query(points, NEIGHBOURS)[1]  # (N, NEIGHBOURS)
+    x, y = points[:, 0][near], points[:, 1][near]
+    x, y = x - x.mean(axis=1, keepdims=True), y - y.mean(axis=1, keepdims=True)
     xx, yy, xy = (x * x).sum(axis=1), (y * y).sum(axis=1), (x * y).sum(axis=1)
     across = (xx + yy - np.hypot(xx - yy, 2 * xy)) / 2  # the smaller eigenvalue of the scatter matrix
     variance = np.maximum(across, 0.0) / (NEIGHBOURS - 2)  # two numbers fix a line
@@ -163,7 +213,11 @@ def spread_of(points: ArrayLike) -> float:
 
 def detection(shape: Shape, points: Floats, reach: float) -> Detection:
     """Return the shape with those of the points that lie within ``reach`` metres of its outline."""
-    distance = shape.signed_distance(points)
+    return _with_points_near(shape, points, shape.signed_distance(points), reach)
+
+
+def _with_points_near(shape: Shape, points: Floats, distance: Floats, reach: float) -> Detection:
+    """Return the shape with those of the points whose distance from it is within ``reach``."""
     on_it = np.abs(distance) <= reach
     rms = float(np.sqrt(np.mean(distance[on_it] ** 2))) if on_it.any() else float("nan")
     return Detection(shape, points[on_it], rms, seen=seen_shares(shape, points[on_it]))

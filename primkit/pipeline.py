@@ -34,7 +34,7 @@ from .segmentation import Grouping, check_count, segment
 from .steps import Steps
 
 Floats = NDArray[np.float64]
-Memory = dict[tuple[bytes, float, int, bool], Group]  # groups as they were measured last, by their points
+Memory = dict[tuple[bytes, float, int, bool, bool], Group]  # groups as they were measured last, by their points
 
 SAME_SPREAD = 1.25  # fits are done anew when the spread comes out farther than this from what was supposed
 SPREAD_ROUNDS = 2  # from the neighbours' estimate, a third low at most, two rounds get there
@@ -52,9 +52,12 @@ class Settings:
         How groups are measured. ``"joint"``: all sides of a shape together, the evidence decides.
         ``"published"``: the paper's way.
     soft : bool
-        Share points around a corner between its sides. Only for ``"joint"``, like the next two.
+        Share points around a corner between its sides. Only for ``"joint"``, like the next three.
     second_opinion : bool
         Split and merge groups where that explains the points better.
+    thorough : bool
+        Fit every kind to every group. By default a group that leaves no doubt, see ``glance``, is fitted once: the
+        same shape, several times faster.
     noise_std : float, optional
         Standard deviation of the sensor's ranges in metres; found from the points when not given.
     line_threshold : float
@@ -72,6 +75,7 @@ class Settings:
     method: Literal["joint", "published"] = "joint"
     soft: bool = True
     second_opinion: bool = True
+    thorough: bool = False
     noise_std: float | None = None
     line_threshold: float = 0.005
     line_trials: int = 10_000
@@ -177,18 +181,18 @@ def _jointly(
     used: Memory = {}
 
     def explain(points: Floats, spread: float) -> Group:
-        key = (points.tobytes(), spread, seed, settings.soft)
+        key = (points.tobytes(), spread, seed, settings.soft, settings.thorough)
         if key not in used:
             used[key] = memory[key] if key in memory else remembered(points, spread)
         return used[key]
 
     def remembered(points: Floats, spread: float) -> Group:
-        alike = (old for (_, *how), old in memory.items() if how == [spread, seed, settings.soft])
+        alike = (old for (_, *how), old in memory.items() if how == [spread, seed, settings.soft, settings.thorough])
         again = (grown(old, points, spread, soft=settings.soft) for old in alike)
         group = next((group for group in again if group is not None), None)
         if group is not None:
             return group
-        return explained(points, spread, seed, soft=settings.soft)
+        return explained(points, spread, seed, soft=settings.soft, thorough=settings.thorough)
 
     last = next((group.spread for group in reversed(memory.values())), None)  # as the last fits left it
     groups, spread = _explain_all(together, settings, last, explain)
@@ -231,7 +235,7 @@ def _in_steps(spread: float) -> float:
 
 def _spread_of_fits(groups: list[Group]) -> float | None:
     """Return how far the points lie from the shapes that explain them; None without shapes."""
-    distances = [g.shape.signed_distance(g.points) for g in groups if g.shape is not None]
+    distances = [g.choice.distance for g in groups if g.shape is not None]
     if not distances:
         return None
     return spread_from_median(float(np.median(np.abs(np.concatenate(distances)))))

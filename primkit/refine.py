@@ -13,7 +13,9 @@ Out: ``Outlines`` again, refined side by side, and how well each explains the po
 [[0.1, 0.1, 0.0, 0.0]]
 
 Sources: giving points back, Isack and Boykov (2012), "Energy-based geometric multi-model fitting"; soft shares,
-Dempster, Laird and Rubin (1977), "Maximum likelihood from incomplete data via the EM algorithm".
+Dempster, Laird and Rubin (1977), "Maximum likelihood from incomplete data via the EM algorithm"; their settling in
+leaps, Varadhan and Roland (2008), "Simple and globally convergent methods for accelerating the convergence of any EM
+algorithm".
 """
 
 from __future__ import annotations
@@ -33,6 +35,8 @@ LEAST_SHARE = 2.0
 HARD_ROUNDS = 8  # nearly all settle in four or five
 SOFT_ROUNDS = 30  # shares settle slowly around blurred corners; what is left then is far below a cell
 SETTLED = 1e-5  # radians, and 1e-6 m: a hundredth of what any sensor tells
+ROW_METRE = 10.0  # a metre counts as so many radians
+LONGEST_LEAP = 4.0  # a leap goes at most so many steps ahead, so that it stays near
 
 
 def refine_hard(points: Floats, guess: Outlines, reach: float, *, square: bool = False) -> Outlines:
@@ -88,19 +92,38 @@ def refine_soft(points: Floats, guess: Outlines, spread: float, *, square: bool 
     Outlines
         The C outlines, settled; or as they were before one of them would have stopped being ``sound``.
     """
-    for _ in range(SOFT_ROUNDS):
-        share, told, _ = shares(points, guess, spread)
-        refined = refit(points, share * told, guess, square=square)
-        if not refined.sound().all():
-            break
-        change = max(
-            float(np.abs(refined.angles - guess.angles).max()),
-            10 * float(np.abs(refined.offsets - guess.offsets).max()),
-        )
-        guess = refined
-        if change <= SETTLED:
-            break
+    for _ in range(SOFT_ROUNDS // 2):
+        steps = [guess]
+        for _ in range(2):
+            share, told, _ = shares(points, steps[-1], spread)
+            refined = refit(points, share * told, steps[-1], square=square)
+            if not refined.sound().all():
+                return steps[-1]
+            steps.append(refined)
+            if np.abs(_as_rows(refined) - _as_rows(steps[-2])).max(initial=0.0) <= SETTLED:
+                return refined
+        guess = _leap(*steps)
     return guess
+
+
+def _leap(start: Outlines, one: Outlines, two: Outlines) -> Outlines:
+    """Return where ever smaller steps in one direction lead to: two rounds show how fast they shrink.
+
+    Shares settle slowly, each step being a part of the last one. This is Varadhan and Roland's scheme S3.
+    """
+    before, after = _as_rows(one) - _as_rows(start), _as_rows(two) - _as_rows(one)
+    shrunk = np.linalg.norm(after - before, axis=1, keepdims=True)
+    length = np.linalg.norm(before, axis=1, keepdims=True) / np.maximum(shrunk, np.finfo(float).tiny)
+    length = np.clip(length, 1.0, LONGEST_LEAP)  # of 1: no leap, just the two steps
+    row = _as_rows(start) + 2 * length * before + length**2 * (after - before)
+    k = row.shape[1] // 2
+    far = Outlines(row[:, :k], row[:, k:] / ROW_METRE)
+    return far if far.sound().all() else two
+
+
+def _as_rows(outlines: Outlines) -> Floats:
+    """Return angles and offsets as one row for each outline, in units that weigh about the same."""
+    return np.concatenate([outlines.angles, ROW_METRE * outlines.offsets], axis=1)
 
 
 def truncated_cost(points: Floats, outlines: Outlines, reach: float) -> Floats:

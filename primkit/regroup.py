@@ -21,7 +21,7 @@ extending K-means with efficient estimation of the number of clusters".
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import combinations
 
@@ -30,7 +30,8 @@ from numpy.typing import NDArray
 
 from .evidence import Candidate, joint_cost, seen_shares
 from .explain import candidates, explained_again
-from .measure import Detection, as_detection
+from .glance import at_a_glance
+from .measure import Choice, Detection, as_detection
 from .scatter import NOWHERE, SIGMAS
 from .segmentation import LEAST_GROUP, kmeans
 from .shapes import Polygon, Shape
@@ -55,11 +56,12 @@ class Group:
     ranked: list[Candidate]
     spread: float
     n_thorough: int  # how many points it had when all explanations were looked for
+    choice: Choice
 
     @cached_property
     def detection(self) -> Detection | None:
         """The best explanation as a detection; None for a bare wall or too few points."""
-        return as_detection(self.points, self.ranked, self.spread)
+        return as_detection(self.choice)
 
     @property
     def shape(self) -> Shape | None:
@@ -73,6 +75,8 @@ class Group:
         if shape is None:
             return False
         lengths = shape.sides if isinstance(shape, Polygon) else [shape.perimeter]
+        if np.average(self.ranked[0].seen, weights=lengths) >= CLOSED:  # by those points alone that lie on it
+            return True
         return bool(np.average(seen_shares(shape, self.points), weights=lengths) >= CLOSED)
 
 
@@ -91,12 +95,14 @@ def cost_of(groups: Sequence[Group]) -> float:
     return joint_cost([g.ranked[0] for g in groups if g.ranked]) - 2 * strays * float(np.log(NOWHERE))
 
 
-def explained(points: Floats, spread: float, seed: int = 0, *, soft: bool = True) -> Group:
-    """Return the points with all their explanations.
+def explained(points: Floats, spread: float, seed: int = 0, *, soft: bool = True, thorough: bool = True) -> Group:
+    """Return the points with all their explanations; or, if not to be thorough, with one that a glance is sure of.
 
     Every group is measured with the same seed, so that a group's result does not depend on the others.
     """
-    return Group(points, candidates(points, spread, soft=soft, rng=seed), spread, len(points))
+    best = None if thorough else at_a_glance(points, spread, soft=soft)
+    ranked = candidates(points, spread, soft=soft, rng=seed) if best is None else [best]
+    return Group(points, ranked, spread, len(points), Choice(points, ranked, spread, seed, soft, best is not None))
 
 
 def grown(old: Group, points: Floats, spread: float, *, soft: bool = True) -> Group | None:
@@ -115,7 +121,7 @@ def grown(old: Group, points: Floats, spread: float, *, soft: bool = True) -> Gr
     ranked = explained_again(points, old.ranked, spread, soft=soft)
     if len(ranked) < 2 or ranked[0].kind != old.ranked[0].kind or _lead(ranked) < SURE:
         return None
-    return Group(points, ranked, spread, old.n_thorough)
+    return Group(points, ranked, spread, old.n_thorough, replace(old.choice, points=points, ranked=ranked))
 
 
 def _lead(ranked: list[Candidate]) -> float:
@@ -211,9 +217,7 @@ def _halves(group: Group, spread: float, n_shapes: int | None, explain: Explain)
 
 def _share_on_shape(group: Group, spread: float) -> float:
     """Return the share of a group's points that lie on its best shape; none without a shape."""
-    if group.shape is None:
-        return 0.0
-    return float(np.mean(np.abs(group.shape.signed_distance(group.points)) <= SIGMAS * spread))
+    return float(np.mean(np.abs(group.choice.distance) <= SIGMAS * spread))
 
 
 def _merge_all(

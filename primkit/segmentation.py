@@ -12,7 +12,7 @@ between their centres, which cuts a long thin shape beside a small one. Two reme
 usable alone: ``count_by_silhouette`` finds the number, and ``link`` joins neighbours, whatever their form.
 
 Sources: K-Means, Lloyd (1982), started after Arthur and Vassilvitskii (2007), "k-means++"; the silhouette,
-Rousseeuw (1987); linking is DBSCAN, Ester, Kriegel, Sander and Xu (1996). All three come from scikit-learn.
+Rousseeuw (1987); linking is DBSCAN, Ester, Kriegel, Sander and Xu (1996). The first two come from scikit-learn.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arguments import ROUNDING, as_count, as_points, as_positive, as_rng
+from .linking import linked
 
 Floats = NDArray[np.float64]
 Labels = NDArray[np.int64]
@@ -175,15 +176,16 @@ def link(points: ArrayLike, reach: float = LINK, neighbours: int = LINK_NEIGHBOU
     >>> link(row + [(0.5, 0.5)]).tolist()
     [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1]
     """
-    from sklearn.cluster import DBSCAN
-
     points = as_points(points)
     if len(points) == 0:
         return np.empty(0, dtype=np.int64)
     reach, neighbours = as_positive(reach, "reach"), as_count(neighbours, "neighbours")
     order = np.lexsort((points[:, 1], points[:, 0]))  # a lone point between two groups goes to the first one met
+    ordered = points[order]
+    first = np.append(True, (np.diff(ordered, axis=0) != 0).any(axis=1))  # of the points at one and the same place
+    place = np.cumsum(first) - 1
     labels = np.empty(len(points), dtype=np.int64)
-    labels[order] = DBSCAN(eps=reach + ROUNDING, min_samples=neighbours).fit_predict(points[order])
+    labels[order] = linked(ordered[first], np.bincount(place), reach + ROUNDING, neighbours)[place]
     sizes = np.bincount(labels + 1)  # strays, of label -1, stand first
     strays = (labels < 0) | (sizes[labels + 1] < LEAST_GROUP)
     return _left_to_right(points, np.where(strays, -1, labels))

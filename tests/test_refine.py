@@ -96,6 +96,21 @@ def test_hard_pushes_noisy_corners_outwards_and_soft_does_not():
     assert abs(np.mean(soft)) < 0.0001
 
 
+@pytest.mark.parametrize("noise", [0.001, 0.004, 0.01])
+def test_leaps_end_where_small_steps_end(noise):
+    """Leaping saves rounds, and must change nothing else."""
+    for seed in range(6):
+        polygon, rng = polygon_of(seed), np.random.default_rng(seed)
+        middle = polygon.centroid
+        points = polygon.outline(250) - middle + rng.normal(0, noise, (250, 2))
+        start = shaken(outline_of(polygon.moved(-middle)), rng, 0.02, 0.002)
+        slow = start
+        for _ in range(400):
+            share, told, _ = shares(points, slow, noise)
+            slow = refit(points, share * told, slow)
+        np.testing.assert_allclose(refine_soft(points, start, noise).corners(), slow.corners(), atol=1e-5)
+
+
 def test_strays_do_not_pull():
     polygon, rng = polygon_of(3), np.random.default_rng(3)
     middle = polygon.centroid

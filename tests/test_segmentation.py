@@ -10,6 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial.distance import cdist
 
 from primkit import segmentation
+from primkit.arguments import ROUNDING
 from primkit.segmentation import LEAST_GROUP, LINK, count_by_silhouette, kmeans, link, segment
 from primkit.shapes import Circle, Polygon
 from tests.helpers import exactly
@@ -351,6 +352,45 @@ def test_linking_single_neighbours_finds_the_components_of_the_graph(seed, n, re
     assert set(labels.tolist()) - {-1} == set(range(labels.max() + 1))
     lefts = [points[labels == g].mean(axis=0)[0] for g in range(labels.max() + 1)]
     assert lefts == sorted(lefts)
+
+
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    n=st.integers(1, 300),
+    size=st.sampled_from([0.03, 0.1, 0.3, 1.0]),
+    reach=st.floats(0.005, 0.1),
+    neighbours=st.integers(1, 8),
+    digits=st.integers(2, 9),
+)
+def test_linking_is_dbscan(seed, n, size, reach, neighbours, digits):
+    """Cells are a short cut, and must lead to the same place: also for points at one place, and on the cells' edges."""
+    from sklearn.cluster import DBSCAN
+
+    points = (np.random.default_rng(seed).uniform(size=(n, 2)) * size).round(digits)
+    points = points[np.lexsort(points.T[::-1])]
+    expected = DBSCAN(eps=reach + ROUNDING, min_samples=neighbours).fit_predict(points)
+    sizes = np.bincount(expected + 1)
+    expected[sizes[expected + 1] < LEAST_GROUP] = -1
+    assert same_groups(link(points, reach, neighbours), expected)
+
+
+@given(
+    gap=st.floats(0.7, 1.5).filter(lambda g: abs(g - 1) > 1e-6),
+    angle=st.floats(-np.pi, np.pi),
+    shift=st.tuples(st.floats(-1, 1), st.floats(-1, 1)),
+    neighbours=st.integers(1, 3),
+)
+def test_a_gap_parts_two_rows_if_and_only_if_it_is_wider_than_the_reach(gap, angle, shift, neighbours):
+    """Wherever the cells' edges lie: cells that are next to each other are within reach, others need not be."""
+    along = np.concatenate([0.3 * np.arange(10), 2.7 + gap + 0.3 * np.arange(10)]) * LINK
+    points = along[:, None] * (np.cos(angle), np.sin(angle)) + shift
+    assert len(set(link(points, neighbours=neighbours).tolist())) == (1 if gap < 1 else 2)
+
+
+def test_linking_far_away_points():
+    """Nearly a million kilometres apart, and still two groups: no number of a cell overflows."""
+    one = np.array(row(10))
+    assert link(np.vstack([one, one + 1e9]), neighbours=1, reach=0.5).tolist() == [0] * 10 + [1] * 10
 
 
 @given(angle=st.floats(-np.pi, np.pi), shift=st.floats(-1e3, 1e3))

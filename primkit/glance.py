@@ -1,0 +1,219 @@
+"""Glance: one simple shape that explains all points, so well that no other kind could.
+
+Most outlines are seen all around, and leave no doubt. Then it is a waste to fit every kind and let the evidence decide:
+from how well points lie on the best circle, and on the best three, four or five straight pieces, follows about the
+least that each kind can cost. The simplest kind whose bound is small is fitted. If what it really costs is less than
+the bounds of all others, it has won, and they need not be fitted: this is "branch and bound". A rival with more sides,
+for which pieces say little, is fitted where its bound does not exclude it. Else ``explain`` looks for all.
+
+The bounds are no theorem: they suppose that an outline is farthest from its middle near a corner. So a shape must be
+well ahead of them; ``tests/test_glance.py`` holds what a glance says against thorough fitting.
+
+In:  points of one cluster, shape (N, 2), metres, and how far points spread from outlines.
+Out: a ``Candidate``; or ``None``, where a glance does not tell.
+
+>>> from primkit.shapes import Circle
+>>> ring = Circle((0.3, 0.1), 0.05).outline(100)
+>>> at_a_glance(ring, 0.0005).kind
+'circle'
+>>> at_a_glance(ring[:70], 0.0005) is None
+True
+
+Source: Land and Doig (1960), "An automatic method of solving discrete programming problems".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .circles import fit_circle
+from .evidence import CROOKED_COST, OF_CIRCLE, OF_SIDE, OF_SQUARE, Candidate, judged, price
+from .explain import BLURRED, CONTENDER, moved, polished, refined
+from .guess import QUARTERS, one_side_more
+from .outlines import Outlines, joined
+from .pieces import Cut, best_cuts
+from .refine import refine_hard
+from .scatter import SIGMAS
+from .shapes import Circle
+
+Floats = NDArray[np.float64]
+
+ENOUGH = 60  # points; fewer leave too much room for doubt
+ALL_AROUND = 0.9  # share of each side that must have been seen
+NEARLY_ALL = 0.98  # share of the points that must lie on the shape, once strays are left out
+MOST_OF_ALL = 0.9  # share of the points that must be left then
+LOOKS = 3  # so many times strays are left out
+STRAY = 20.0  # cost of a point that comes from nowhere, and not from the outline, at most
+# Pieces that are free to be anywhere come closer than sides that meet in corners: a simple shape is fitted first even
+# if its bound is so many times the least.
+ROUGHLY = 2.0
+OWN_POINTS = 8  # of each side: a side with fewer could as well be a few strays
+CERTAIN = 10.0  # by so much a shape must be ahead: very strong evidence (Kass and Raftery, 1995)
+# A triangle fills at most half of a rectangle. So their outlines part by 0.27 of the triangle's incircle's radius (root
+# mean square, the least over all triangles and rectangles; found numerically); half of that allows for uneven points.
+APART = 0.135
+MOST_INCIRCLE = 0.1  # m: no triangle on a board has a larger one
+
+
+def at_a_glance(points: Floats, spread: float, *, soft: bool = True) -> Candidate | None:
+    """Return the explanation of a cluster's points if it is beyond doubt.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        Metres, no point twice.
+    spread : float
+        Standard deviation of the points from the outline, metres.
+    soft : bool
+        Share points between sides in the last polish, as ``refine.refine_soft`` does.
+
+    Returns
+    -------
+    Candidate or None
+        The one that ``explain.candidates`` ranks first, to a few hundredths of a millimetre. None if points are few
+        or blurred, many are strays, a stretch was not seen, or another kind could explain the points as well.
+    """
+    if len(points) < ENOUGH or spread > BLURRED:
+        return None
+    middle = points.mean(axis=0)
+    local = points - middle  # digits are not lost far from the origin
+    fit = _first_fit(local, spread)
+    if fit is None:
+        return None
+    best = polished(local, fit.figure, spread, soft=soft, square=fit.way.square)
+    if best is None or min(best.seen) < ALL_AROUND:
+        return None
+    if any(_comes_near(local, rival, best, spread, soft) for rival in fit.rivals):
+        return None
+    return moved(best, middle)
+
+
+@dataclass(frozen=True, eq=False)
+class _Way:
+    """One way to explain the points: a first guess, its fitted numbers, and the least that it can cost."""
+
+    guess: Circle | Outlines
+    square: bool
+    fitted: Floats
+    least: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Fit:
+    """A way with its figure, and those with more sides that may come near it."""
+
+    way: _Way
+    figure: Circle | Outlines
+    rivals: list[_Way]
+
+
+def _first_fit(points: Floats, spread: float) -> _Fit | None:
+    """Return the simplest way whose bound is small, fitted; None where it does not explain the points beyond doubt.
+
+    Strays lead the cuts astray: where the fit leaves points out, all is done once more without them.
+    """
+    kept = points
+    for _ in range(LOOKS):
+        circle, cuts = fit_circle(kept, "taubin"), best_cuts(kept)
+        if circle is None or len(cuts) < 3:
+            return None
+        ways = _ways(kept, circle, cuts, spread)
+        first, figure = _simplest(kept, ways, spread)
+        distance, own = _distances(kept, figure, spread)
+        on_it = np.abs(distance) <= SIGMAS * spread
+        if on_it.mean() >= NEARLY_ALL:
+            break
+        kept = kept[on_it]
+        if len(kept) < max(ENOUGH, MOST_OF_ALL * len(points)):
+            return None
+    else:
+        return None
+    cost = _cost(float((distance**2).sum()), first.fitted, len(kept), spread)
+    enough = cost + CERTAIN + STRAY * (len(points) - len(kept))  # a rival may explain what this one leaves out
+    rivals = [way for way in ways if way is not first and way.least < enough]
+    n_numbers = np.inf if isinstance(figure, Circle) else len(first.fitted)
+    simpler = any(len(rival.fitted) <= n_numbers for rival in rivals)
+    return None if simpler or own < OWN_POINTS else _Fit(first, figure, rivals)
+
+
+def _ways(points: Floats, circle: Circle, cuts: dict[int, Cut], spread: float) -> list[_Way]:
+    """Return all ways to explain the points, the simplest first, each with the least that it can cost."""
+    n = len(points)
+    upright = Outlines(cuts[4].outline.angles[:, :1] + QUARTERS, cuts[4].outline.offsets)
+    upright_squares = max(cuts[4].squares, n * _apart(cuts[3], n) ** 2)
+    free = {k: np.tile(OF_SIDE * k, k) for k in cuts}
+    round_squares = float((circle.signed_distance(points) ** 2).sum())
+    least = {k: _cost(cuts[k].squares, free[k], n, spread) for k in cuts}
+    return [
+        _Way(circle, False, OF_CIRCLE, _cost(round_squares, OF_CIRCLE, n, spread)),
+        _Way(upright, True, OF_SQUARE, _cost(upright_squares, OF_SQUARE, n, spread)),
+        _Way(cuts[3].outline, False, free[3], least[3]),
+        _Way(cuts[4].outline, False, free[4], least[4] + CROOKED_COST),
+        _Way(cuts[5].outline, False, free[5], least[5]),
+    ]
+
+
+def _cost(squares: float, fitted: Floats, n_points: int, spread: float) -> float:
+    """Return what a fit costs whose points lie so far from it, up to what all fits to these points share."""
+    return squares / spread**2 + price(fitted, n_points, spread)
+
+
+def _apart(triangle: Cut, n_points: int) -> float:
+    """Return by how much any rectangle must miss points on this triangle, as a root mean square, metres."""
+    missed = float(np.sqrt(triangle.squares / n_points))
+    if missed > APART * MOST_INCIRCLE or not triangle.outline.sound()[0]:
+        return 0.0
+    polygon = triangle.outline.polygon()
+    incircle = 2 * polygon.area / polygon.perimeter
+    return max(0.0, APART * incircle - missed)
+
+
+def _fitted(points: Floats, way: _Way, spread: float) -> Circle | Outlines | None:
+    """Return the figure with the least squares near a way's guess; None where there is none."""
+    if isinstance(way.guess, Circle):
+        return way.guess  # Taubin's is as good as that
+    figure = refine_hard(points, way.guess, SIGMAS * spread, square=way.square)
+    return figure if figure.sound()[0] else None
+
+
+def _simplest(points: Floats, ways: list[_Way], spread: float) -> tuple[_Way, Circle | Outlines]:
+    """Return the simplest way whose bound is small, and its figure; a circle, the first of all ways, is always one."""
+    least = min(way.least for way in ways)
+    first = next(way for way in ways if way.least <= ROUGHLY * least)
+    figure = _fitted(points, first, spread)
+    if figure is not None:
+        return first, figure
+    return _simplest(points, [way for way in ways if way is not first], spread)
+
+
+def _distances(points: Floats, figure: Circle | Outlines, spread: float) -> tuple[Floats, int]:
+    """Return each point's distance from the figure, and how many points lie on that side which has the fewest."""
+    if isinstance(figure, Circle):
+        return figure.signed_distance(points), len(points)
+    r = figure.distances(points)[0]
+    distance = r.max(axis=1)
+    own = np.bincount(r.argmax(axis=1)[np.abs(distance) <= SIGMAS * spread], minlength=r.shape[1])
+    return distance, int(own.min())
+
+
+def _comes_near(points: Floats, rival: _Way, best: Candidate, spread: float, soft: bool) -> bool:
+    """Tell whether a rival with more sides costs hardly more than the best, when it is fitted.
+
+    Pieces need not bend, so that their bound says little about a side too many. ``explain`` fits it in the same way.
+    """
+    guess = rival.guess
+    assert isinstance(guess, Outlines)
+    assert isinstance(best.figure, Outlines)
+    if guess.angles.shape[1] == best.figure.angles.shape[1] + 1:
+        guess = joined(guess, one_side_more(points, best.figure))
+    figure = refined(points, guess, spread, square=False)
+    if figure is None:
+        return False
+    cost = judged(points, figure, spread).cost
+    if best.cost + CERTAIN < cost < best.cost + CONTENDER:
+        finest = polished(points, figure, spread, soft=soft)
+        cost = cost if finest is None else finest.cost
+    return cost < best.cost + CERTAIN

@@ -1,0 +1,133 @@
+"""Pieces: an outline that was seen all around, cut into straight pieces in the best of all ways.
+
+Points around a middle have an order: their bearings. In that order each side is one stretch, and a polygon is a choice
+of cuts between stretches. All choices are compared, none is drawn at random: the sums of squares of all stretches come
+from running sums, and the best k of them from the best k - 1, which is dynamic programming.
+
+In:  points of one closed outline, shape (N, 2), metres, around the origin.
+Out: a ``Cut`` for each number of sides: the outline, and how well the pieces fit.
+
+>>> from primkit.shapes import Polygon
+>>> ring = Polygon([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)]).outline(80)
+>>> best = best_cuts(ring)
+>>> [k for k in best if best[k].squares < 1e-12], best[4].outline.polygon().kind
+([4, 5], 'rectangle')
+
+Source: Bellman (1961), "On the approximation of curves by line segments using dynamic programming".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .outlines import Outlines, from_angle_order
+
+Floats = NDArray[np.float64]
+
+KNOTS = 60  # cuts lie between two of so many places along the outline, a centimetre apart or less
+FEWEST, MOST = 3, 5  # sides
+LEAST_STRETCH = 0.01  # m: two thirds of the shortest side; the rest of it may not have been seen
+
+
+@dataclass(frozen=True, eq=False)
+class Cut:
+    """The best way to cut the points into pieces.
+
+    Parameters
+    ----------
+    outline : Outlines (one row)
+        The pieces' lines; not always ``sound``.
+    squares : float
+        Sum of the squared distances of the points from their piece's line, square metres; points near the cuts are
+        supposed to be as close as the others. The pieces need not meet in corners, nor bend: an outline with so many
+        sides hardly comes closer to the points.
+    """
+
+    outline: Outlines
+    squares: float
+
+
+def best_cuts(points: Floats) -> dict[int, Cut]:
+    """Return the best cut for three, four and five sides, as far as there is one.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        Metres, around the origin.
+
+    Notes
+    -----
+    The first cut lies near the point that is farthest from the origin: of a polygon, that is a corner. Where exactly
+    between two knots a cut lies, is left open, and the points there belong to no piece: so none is on a wrong one.
+    """
+    points = _from_farthest(points)
+    knots = np.linspace(0, len(points), min(KNOTS, len(points)) + 1).astype(int)
+    moments = _moments_between(points, knots)[:, 1:, :-1]  # a piece begins a knot after its cut, or ends a knot before
+    squares = np.where(_long_enough(points, knots), _squares(moments), np.inf)
+    best, last_cuts, cuts = squares[0], [], {}  # best[j]: the least squares of so many pieces that end at knot j
+    for k in range(2, MOST + 1):
+        longer = best[:, None] + squares
+        last_cuts.append(longer.argmin(axis=0))
+        best = longer.min(axis=0)
+        if k >= FEWEST and np.isfinite(best[-1]):
+            ends = _traced(last_cuts)
+            pieces = moments[:, ends[:-1], ends[1:]]
+            cuts[k] = Cut(_lines(pieces), float(best[-1]) * len(points) / float(pieces[0].sum()))
+    return cuts
+
+
+def _from_farthest(points: Floats) -> Floats:
+    """Return the points in the order of their bearings, beginning where they are farthest; a lone stray is not."""
+    points = points[np.argsort(np.arctan2(points[:, 1], points[:, 0]), kind="stable")]
+    far = (points**2).sum(axis=1)
+    with_both_neighbours = np.minimum(far, np.minimum(np.roll(far, 1), np.roll(far, -1)))
+    return np.roll(points, -int(with_both_neighbours.argmax()), axis=0)
+
+
+def _moments_between(points: Floats, knots: NDArray[np.intp]) -> Floats:
+    """Return the sums of 1, x, y, xx, yy and xy over the points from one knot to another, shape (6, M + 1, M + 1)."""
+    x, y = points.T
+    sums = np.zeros((6, len(points) + 1))
+    np.cumsum([np.ones_like(x), x, y, x * x, y * y, x * y], axis=1, out=sums[:, 1:])
+    sums = sums[:, knots]
+    return sums[:, None, :] - sums[:, :, None]
+
+
+def _long_enough(points: Floats, knots: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Tell which pieces can be as long as a side must be: from the knot before them to the one after, shape (M, M)."""
+    x, y = points[knots % len(points)].T
+    chord = (x[1:] - x[:-1, None]) ** 2 + (y[1:] - y[:-1, None]) ** 2
+    return chord >= LEAST_STRETCH**2
+
+
+def _scatter(moments: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return the scatter sums xx, yy and xy about the mean of each piece."""
+    n, x, y, xx, yy, xy = moments
+    n = np.maximum(n, 1.0)
+    return xx - x * x / n, yy - y * y / n, xy - x * y / n
+
+
+def _squares(moments: Floats) -> Floats:
+    """Return the sum of squared distances from the best line of each piece; infinite where there is none."""
+    xx, yy, xy = _scatter(moments)
+    across = (xx + yy - np.hypot(xx - yy, 2 * xy)) / 2  # the smaller eigenvalue of the scatter matrix
+    return np.where(moments[0] >= 2, np.maximum(across, 0.0), np.inf)
+
+
+def _traced(last_cuts: list[NDArray[np.intp]]) -> list[int]:
+    """Return where the pieces are cut, from the first cut to the last."""
+    ends = [len(last_cuts[0]) - 1]
+    for cut in reversed(last_cuts):
+        ends.append(int(cut[ends[-1]]))
+    return [*ends, 0][::-1]
+
+
+def _lines(moments: Floats) -> Outlines:
+    """Return the best lines of pieces as an outline, their normals away from the origin."""
+    xx, yy, xy = _scatter(moments)
+    angles = 0.5 * np.arctan2(2 * xy, xx - yy) + np.pi / 2  # across the direction of most scatter
+    offsets = (np.cos(angles) * moments[1] + np.sin(angles) * moments[2]) / moments[0]
+    return from_angle_order(np.where(offsets < 0, angles + np.pi, angles)[None], np.abs(offsets)[None])
