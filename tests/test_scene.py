@@ -329,6 +329,9 @@ def test_the_thread_ends_with_the_scene(world):
         thread.join(10)
     assert names
     assert not any(thread.is_alive() for thread in names)
+    ahead(scene.state, 3)
+    scene.state.finish()
+    assert scene.state.n_scans_found == scene.state.n_scans, "the state is still of use"
 
 
 def test_who_drives_hears_of_a_look_that_failed_and_drives_on(scene, monkeypatch):
@@ -632,6 +635,15 @@ def test_nothing_true_is_sent_unless_it_is_asked_for(scene):
     for one in asked:
         scene.answer(one)
     assert [len(message["truth"]) for message, _ in scene.sent] == [4, 0]
+
+
+def test_a_look_that_a_script_waited_for_is_shown(scene):
+    scene.state.move(wheels_for(["forward"]))
+    scene.state.finish()
+    scene.answer({"do": "news"})
+    assert len(scene.sent[-1][0]["shapes"]) == len(scene.state.found)
+    scene.answer({"do": "news"})
+    assert "shapes" not in scene.sent[-1][0]
 
 
 def test_a_shape_is_named_when_it_is_found(scene):

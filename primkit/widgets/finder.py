@@ -157,8 +157,10 @@ class Finder:
             raise
 
     def close(self) -> None:
-        """Let the executor go; nothing is begun any more, and nothing is waited for."""
+        """Let the executor go, and wait for nothing; who still looks then does so at once."""
         self._executor.shutdown(wait=False, cancel_futures=True)
+        self._executor = AtOnce()
+        self.forget()
 
     def submit(self, work: Callable[[], T]) -> Future[Any]:
         """Have other work done beside the drive, when no look is under way."""

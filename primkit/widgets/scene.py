@@ -103,6 +103,7 @@ class Scene(anywidget.AnyWidget):
         self.state = state
         self.paused = self.shows_unseen = self.shows_truth = False
         self._shown: list[Message] = []  # the shapes as the page has them
+        self._shown_of = 0  # how many scans they were found in
         self._automatic: Future[Comparison] | None = None  # under way, or done
         self._compared: Message | None = None
         self.on_msg(lambda _, asked, __: self.answer(asked))
@@ -174,12 +175,13 @@ class Scene(anywidget.AnyWidget):
     def _mapped(self) -> Message:
         """Fetch shapes, begin to look for them if it is time to; return what is new about them."""
         try:
-            done = self.state.map()
+            self.state.map()
         except Exception as error:  # whatever it is: who drives must hear of it, and can drive on
             return {"say": f"The look for shapes failed, the drive goes on: {type(error).__name__}: {error}"}
-        if not done:
+        if self.state.n_scans_found == self._shown_of:
             return {}
         before, self._shown = self._shown, [drawn(one) for one in self.state.found]
+        self._shown_of = self.state.n_scans_found
         if self._shown == before:
             return {"score": self._score()}
         return {"shapes": self._shown, "score": self._score(), "say": _news_of(before, self._shown)}
@@ -201,7 +203,7 @@ class Scene(anywidget.AnyWidget):
     def _send_all(self, say: str = "") -> None:
         """Send all that there is: to a page that knows nothing, or shall forget what it knows."""
         state = self.state
-        self._shown = [drawn(one) for one in state.found]
+        self._shown, self._shown_of = [drawn(one) for one in state.found], state.n_scans_found
         same = board_and_look(state.world.size, state.lidar, state.grid.resolution) | {"moving": state.moving}
         all_ = {"cells": state.grid.cells.tolist(), "shapes": self._shown, "automatic": self._compared}
         self.send(self._now() | same | all_ | self._truth() | {"paused": self.paused, "say": say, "busy": self._busy})
