@@ -64,7 +64,7 @@ def grade(
     same = tree_hash(*folders) == before
     took = time.monotonic() - start
     told = ", ".join(f"{count} {words}" for words, count in counts.items() if count)
-    say(f"{len(students)} submissions in {took:.0f} s: {told}")
+    say(f"{len(students)} submission{'s' * (len(students) != 1)} in {took:.0f} s: {told}")
     say(
         "submitted/ is as it was"
         if same
