@@ -237,13 +237,13 @@ def foggy(rng: np.random.Generator, row: int) -> tuple[Floats, float, np.random.
 
 def in_fog(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     """Yield walls behind evenly spread fog."""
-    for _ in range(8):
+    for _ in range(6):
         yield foggy(rng, 0)
 
 
 def behind_a_row(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     """Yield walls behind fog and a straight row of drops, on which there are more hits than on the wall."""
-    for _ in range(8):
+    for _ in range(6):
         yield foggy(rng, 50)
 
 

@@ -388,6 +388,12 @@ def count_like(
     return count
 
 
+def closed_board(cells: Floats, shape: NDArray[np.int64]) -> Floats:
+    """Count the first cell beyond the far borders to the last one on the board; right only for points on a border."""
+    cells = np.where(cells == shape, shape - 1, cells)
+    return cells[((cells >= 0) & (cells < shape)).all(axis=1)]
+
+
 def boards(rng: np.random.Generator, least: Any, off: float) -> Iterator[tuple[Any, ...]]:
     """Yield points on boards whose corner lies anywhere, up to ``off`` board lengths beside it; not on borders."""
     n = 0
@@ -503,6 +509,11 @@ BUSY_CELLS = task(
             "A cell holds its lower border, and not its upper one.",
             like=count_like(lambda points, corner, h: np.ceil((points - corner) / h) - 1),
             name="upper border for lower",
+        ),
+        Fault(
+            "A point on the board's upper or right border lies on no cell: each cell leaves that border to the next.",
+            like=count_like(keep=closed_board),
+            name="board's far border kept",
         ),
         Fault(
             "shape says how many cells there are along x first, then along y.",
