@@ -29,6 +29,7 @@ SETS = {Path(name).stem: text for name, text in PAGES.items() if name.startswith
 NOTEBOOK = PACK / "slides.ipynb"
 SLIDES = json.loads(NOTEBOOK.read_text(encoding="utf-8"))
 LINES, FIGURE_BYTES = 150, 150_000
+LIMITS = ("timeout", "tests_timeout", "megabytes")  # of a course's submissions
 
 
 def test_the_pack_is_whole():
@@ -296,9 +297,10 @@ def test_the_limits_that_are_stated_are_those_of_the_program():
     from primkit.grading.task import SECONDS
     from primkit.teaching.course import CONFIG
 
-    seconds, megabytes = (re.search(rf"{name} = (\d+)", CONFIG)[1] for name in ("timeout", "megabytes"))
+    cell, tests, megabytes = (re.search(rf"\.{name} = (\d+)", CONFIG)[1] for name in LIMITS)
     page = PAGES["untrusted_code.md"]
-    assert f"hidden test ({SECONDS:g} s) and for each cell ({seconds} s)" in page
+    assert f"for each part of a hidden test ({SECONDS:g} s; " in page
+    assert f"for each cell ({cell} s) and each hidden test as a whole ({tests} s)" in page
     assert f"{int(megabytes) / 1024:g} GB for each submission" in page
 
 
