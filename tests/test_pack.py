@@ -268,6 +268,14 @@ def test_a_set_s_page_has_its_own_tasks_and_points(name):
     assert re.findall(r"`(\w+)`", row) == [*written, name]
 
 
+def test_the_rubric_has_a_line_for_each_point_of_the_written_answer():
+    """As many as the notebook's own rubric, which students see."""
+    rubric = SETS["09_your_own_map"].split("## The written answer")[1]
+    rows = re.findall(r"^\| (.+) \| .+ \| .+ \|$", rubric, re.MULTILINE)[1:]
+    shown = re.findall(r"^\| .+ \| 1 \|$", sets.source(sets.CELLS["trust-text"]), re.MULTILINE)
+    assert len(rows) == len(shown) == sets.points_of("trust")
+
+
 def test_the_names_that_belong_to_no_task_are_the_program_s_own():
     table = PAGES["assignments.md"].split("belong to no single task:")[1].split("\n## ")[0]
     names = re.findall(r"^\| (.+?) \| .+ \| .+ \|$", table, re.MULTILINE)[1:]
