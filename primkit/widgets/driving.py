@@ -211,9 +211,12 @@ class DriveState:
         Exception
             Whatever ended the look, if it could not be finished.
         """
-        self._finder.forget()
-        self._begin_look(most=len(self.grid))
-        self._fetch(wait=True)
+        looked_at = -1
+        while looked_at != len(self.grid):  # what the shapes rule out is given up, and leaves another map
+            looked_at = len(self.grid)
+            self._finder.forget()
+            self._begin_look(most=looked_at)
+            self._fetch(wait=True)
 
     @property
     def looks(self) -> bool:

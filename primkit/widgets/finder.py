@@ -35,9 +35,7 @@ Bools = NDArray[np.bool_]
 P = ParamSpec("P")
 T = TypeVar("T")
 
-MOST = (
-    6000  # cells: a look at these takes a quarter of a second, and more are only there when noise has blurred the map
-)
+MOST = 6000  # cells: a look at so many takes a quarter of a second; only noise makes more
 MIXERS = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F)  # odd and large, so that neighbours have nothing in common
 
 

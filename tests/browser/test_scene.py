@@ -190,6 +190,16 @@ def test_leaving_stops_the_robot(seat):
     assert seat.stands() == scans, "the key that was held then must not be held now"
 
 
+def test_leaving_the_window_stops_the_robot(seat):
+    """Another window in front: the key is let go there, and this page never hears of it."""
+    seat.page.keyboard.down("w")
+    seat.after(4)
+    seat.page.evaluate("window.dispatchEvent(new Event('blur'))")
+    scans = seat.stands()
+    seat.page.keyboard.up("w")
+    assert seat.stands() == scans
+
+
 def test_tab_leaves_to_the_buttons_and_on(seat):
     for name in ("forward", "left", "back", "right", "Pause"):
         seat.page.keyboard.press("Tab")
