@@ -1,12 +1,15 @@
 """Teaching: from an empty folder to grades and feedback by the command line alone, through nbgrader itself."""
 
 import csv
+import io
 import json
 import os
 import re
 import shutil
 import subprocess
 import sys
+import warnings
+from contextlib import chdir, redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import nbformat
@@ -19,6 +22,7 @@ from primkit.personal import personal_scans, personal_world
 from primkit.teaching.checking import check
 from primkit.teaching.course import ASSIGNMENTS, Course, new_course
 from primkit.teaching.handed_in import file_faults, tree_hash
+from primkit.teaching.running import nbgrader
 from tests.submissions import ProblemSet, about, answers_of, read, with_cell
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -26,19 +30,21 @@ PS, NUMBER = "ps1", 1
 
 
 def teach(folder, *words, code=0):
-    """Run ``primkit teach`` in a process of its own, in a folder; return what it prints."""
+    """Run ``primkit teach`` in a folder; return what it prints."""
+    said = io.StringIO()
+    with chdir(folder), redirect_stdout(said), redirect_stderr(said), warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # nbgrader's own
+        assert main(["teach", *map(str, words)]) == code, said.getvalue()
+    return said.getvalue()
+
+
+def in_a_new_process(folder, *words):
+    """Do the same as a teacher does it, in a terminal."""
+    command = [sys.executable, "-m", "primkit", "teach", *words]
     done = subprocess.run(
-        [sys.executable, "-m", "primkit", "teach", *map(str, words)],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        env=os.environ | {"PYTHONUTF8": "1"},
-        check=False,
-        timeout=600,
+        command, cwd=folder, capture_output=True, text=True, encoding="utf-8", check=True, timeout=600
     )
-    assert done.returncode == code, done.stdout + done.stderr
-    return done.stdout + done.stderr
+    return done.stdout
 
 
 def table(path):
@@ -53,11 +59,11 @@ def table(path):
 def graded(tmp_path_factory):
     """A course with three submissions and one that is no notebook; and what each command said."""
     folder = tmp_path_factory.mktemp("teacher")
-    said = {"new-course": teach(folder, "new-course", "course")}
+    said = {"new-course": in_a_new_process(folder, "new-course", "course")}
     course = folder / "course"
     (course / "students.csv").write_text("id,first_name,last_name,email\nright,Ada,,\n0123,,,\nmixed,,,\n")
-    said["check"] = teach(course, "check")
-    said["release"] = teach(course, "release", PS)
+    said["check"] = in_a_new_process(course, "check")
+    said["release"] = in_a_new_process(course, "release", PS)
     problem_set = ProblemSet(course, PS)
     problem_set.hand_in("right", problem_set.reference())
     problem_set.hand_in("0123", problem_set.released)  # untouched, and a name that is a number
@@ -318,6 +324,44 @@ def test_whatever_a_cell_does_costs_itself_alone(tmp_path):
     assert sorted(path.name for path in folder.iterdir()) == ["given.txt"]  # the submission's own folder
 
 
+def run(folder, sources, **settings):
+    """Run cells as a submission; return their outputs, and what was noted."""
+    from primkit.teaching.executing import CarefulExecute
+
+    folder.mkdir()
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(source) for source in sources])
+    execute = CarefulExecute(course=str(folder.parent), **settings)
+    resources = {"metadata": {"path": str(folder)}, "nbgrader": {"student": "ada"}}
+    notebook, _ = execute.preprocess(notebook, resources)
+    noted = [(fault["cell"], fault["name"]) for fault in notebook.metadata.primkit.faults]
+    return [cell.outputs for cell in notebook.cells], noted
+
+
+def test_a_cell_that_ends_the_kernel_only_when_it_runs_again(tmp_path):
+    once = (
+        "import os\nfrom pathlib import Path\nseen = Path.home() / 'seen'\nseen.exists() and os._exit(1)\nseen.touch()"
+    )
+    outputs, noted = run(tmp_path / "x", ["x = 1", once, "import os\nos._exit(2)", "print(x)"])
+    assert noted == [("cell 3", "KernelDied"), ("cell 2", "KernelDied")]
+    assert outputs[3][0].text == "1\n"
+
+
+def test_memory_is_watched_where_the_system_does_not_refuse_it(tmp_path, monkeypatch):
+    monkeypatch.setattr("primkit.teaching.executing.PREPARE", "pass  # {0}")
+    hog = "import time\nhog = b'1' * (400 * 2**20)\ntime.sleep(20)"
+    outputs, noted = run(tmp_path / "x", [hog, "print('on')"], megabytes=300)
+    assert noted == [("cell 1", "MemoryError")]
+    assert outputs[0][-1].evalue == "this cell took more than 300 MB of memory, and its kernel was ended"
+    assert outputs[1][0].text == "on\n"
+
+
+def test_what_a_cell_prints_is_cut(tmp_path):
+    outputs, noted = run(tmp_path / "x", ["for _ in range(500):\n    print('a' * 10_000, flush=True)", "print('on')"])
+    assert sum(len(output.text) for output in outputs[0]) < 500_000
+    assert outputs[1][0].text == "on\n"
+    assert noted == []
+
+
 def test_a_hidden_test_without_its_number_has_no_points(tmp_path):
     from primkit.teaching.executing import CarefulExecute
 
@@ -463,6 +507,15 @@ def test_a_file_that_is_no_submission_gets_its_own_sentence(course, content, sen
     (fault,) = file_faults(course, PS, "ada")
     assert fault.student == "ada"
     assert sentence in fault.says
+
+
+def test_a_command_of_nbgrader_s_that_fails_says_why(course):
+    done = nbgrader(course, "generate_assignment", "no-such-set", log=course.root / "log.txt")
+    assert done.code != 0
+    assert "no-such-set" in done.reason
+    assert (course.root / "log.txt").read_text().startswith("$ nbgrader generate_assignment no-such-set\n")
+    stopped = nbgrader(course, "--version", seconds=0.01)
+    assert (stopped.code, stopped.reason) == (1, "TimeoutError: nbgrader was stopped after 0.01 s")
 
 
 def test_a_hash_sees_every_change(tmp_path):

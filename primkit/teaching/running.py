@@ -7,6 +7,7 @@ Out: whether it succeeded, and its log.
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import sysconfig
@@ -26,11 +27,11 @@ class Done:
 
     @property
     def reason(self) -> str:
-        """The last line that names an error."""
+        """The line that names the error: the traceback's last, or nbgrader's first complaint."""
         lines = [line.strip() for line in self.log.splitlines() if line.strip()]
-        errors = [line for line in lines if "Error" in line.split(":")[0] or "| ERROR]" in line]
-        named = [line for line in errors if "ERROR]" not in line] or errors or lines or [f"exit code {self.code}"]
-        return named[-1]
+        named = [line for line in lines if re.match(r"[\w.]*(Error|Exception)\b", line)]
+        complaints = [line for line in lines if "| ERROR]" in line]
+        return (named[-1:] or complaints[:1] or lines[-1:] or [f"exit code {self.code}"])[0]
 
 
 def nbgrader(course: Course, *words: str, log: Path | None = None, seconds: float | None = None) -> Done:
