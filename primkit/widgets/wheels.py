@@ -66,7 +66,7 @@ def draw_wheels(left: float, right: float, seconds: float, pieces: int) -> str:
             [
                 ("arc", BLUE, "line"),
                 (f"{_pieces(pieces)}: {off:.0f} mm off", VERMILION, "square"),
-                ("middle of the circle", ORANGE, "cross"),
+                *([("turning centre", ORANGE, "cross")] if abs(radius) <= SIZE / 2 else []),
             ]
         ),
         title=_title(left, right, turn),
@@ -90,7 +90,7 @@ def turning_radius(left: float, right: float) -> float:
 
 
 def _circle(frame: Frame, radius: float) -> str:
-    """Return the circle that the arc is a part of, and its middle, where they are on the board."""
+    """Return the circle that the arc is a part of, and its middle if that is on the board."""
     if abs(radius) > STRAIGHT:
         return ""
     x, y, heading = START.tolist()
@@ -98,7 +98,7 @@ def _circle(frame: Frame, radius: float) -> str:
     ring = middle + abs(radius) * np.column_stack([f(np.linspace(0, 2 * np.pi, SMOOTH)) for f in (np.cos, np.sin)])
     seen = np.abs(ring).max(axis=1) <= SIZE / 2
     starts = seen[:-1] & seen[1:]
-    cross = frame.points([middle], ORANGE, "cross", 10) if np.abs(middle).max() <= SIZE / 2 else ""
+    cross = frame.points([middle], ORANGE, "cross", 10) if abs(radius) <= SIZE / 2 else ""
     return frame.segments(ring[:-1][starts], ring[1:][starts], PALE, 1) + cross
 
 
