@@ -573,6 +573,23 @@ def test_a_pose_on_an_outline(shape):
         assert same(ranges[free], cast_rays(others, pose, ANGLES)[0, free]).all()
 
 
+@pytest.mark.parametrize("off", [0.0, 1e-18, 3e-17, 1e-16, 1e-15, 1e-13, 1e-12, 1e-9])
+def test_a_robot_on_a_side_sees_no_phantom_beyond_it(off):
+    """Whichever way a side runs, a beam along it ends on the outline or nowhere."""
+    rng = np.random.default_rng(8)
+    upright = box(0.1, -0.21, 0.3, -0.09)
+    for shape in [upright, *(free_shape(kind, rng.uniform(-0.3, 0.3, 2), rng) for kind in ("triangle", "pentagon"))]:
+        for corner, edge, normal in zip(shape.vertices, shape.edges, shape.normals, strict=True):
+            along = np.arctan2(edge[1], edge[0])
+            places = corner + rng.uniform(size=(50, 1)) * edge + off * normal
+            poses = np.column_stack([places, along + rng.choice([0, np.pi, np.pi / 2, rng.uniform(-7, 7)], 50)])
+            ranges = cast_rays(World([shape]), poses, ANGLES)
+            pose, beam = np.isfinite(ranges).nonzero()
+            bearing, far = poses[pose, 2] + ANGLES[beam], ranges[pose, beam]
+            ends = places[pose] + far[:, None] * np.column_stack([np.cos(bearing), np.sin(bearing)])
+            assert np.abs(shape.signed_distance(ends)).max(initial=0.0) < 1e-9
+
+
 def test_a_pose_exactly_on_a_side_or_an_outline_is_inside():
     world = World([box(0.25, -0.125, 0.5, 0.125), Circle((-0.5, 0), 0.25)])
     poses = [(0.25, 0, 0), (0.375, 0.125, 0), (0.5, -0.0625, 0), (-0.25, 0, 0), (-0.5, 0.25, 0)]

@@ -48,7 +48,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..arguments import ROUNDING, as_poses, check_type
 from ..shapes import Circle, Polygon
 from ..world import World
-from .fan import TURN, Fan
+from .fan import CORNER_HIT, TURN, Fan
 from .near import Near
 
 Floats = NDArray[np.float64]
@@ -59,6 +59,9 @@ Hits = tuple[Ints, Floats, Ints]  # where in the table of ranges, how far; and t
 # Poses are cast in blocks of at most so many pairs and beams: some MB, which stay in the cache, and which the system
 # does not take back between two blocks (getting them again would cost as much as all the computing).
 PAIRS_PER_BLOCK, BEAMS_PER_BLOCK = 16_384, 200_000
+# From a robot on a side, in line with it, rounding could turn a beam past the quarter turn, where the tangent changes
+# its sign: it would hit the side's other end. So no beam of a side is nearer to the quarter turn than this [rad].
+EDGE_ON = 2 * CORNER_HIT
 SIDES = 5  # of a polygon; fewer are filled up with sides without length, which face nobody
 
 
@@ -160,8 +163,8 @@ def _hits_on_sides(scene: _Scene, fan: Fan, here: tuple[Floats, ...], pose: Ints
     right = np.maximum(right, -half)
 
     # 3. The beams that hit it.
-    toward = scene.inward.take(side) - heading.take(pose)
-    hit, beam = fan.between(toward + np.arctan2(right, h), toward + np.arctan2(left, h))
+    toward, off = scene.inward.take(side) - heading.take(pose), np.maximum(h, EDGE_ON * length)
+    hit, beam = fan.between(toward + np.arctan2(right, off), toward + np.arctan2(left, off))
 
     # 4. Where, and how far that is.
     phi, h = fan.angles.take(beam) - toward.take(hit), h.take(hit)
