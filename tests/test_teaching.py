@@ -265,18 +265,18 @@ def test_everybody_is_graded_on_their_own_map(tmp_path):
 # --- running what is handed in ------------------------------------------------------------------------------
 
 TROUBLE = {
-    "first": "x = 1\nopen('made.txt', 'w').close()",
+    "first": "import numpy as np\nx = 1\nopen('made.txt', 'w').close()",
     "loop": "y = 2\nwhile True:\n    pass",
     "after": "x += 1\nprint(x, y)",
     "deletes": "import os, shutil\nshutil.rmtree(os.getcwd())",
     "reads": "print(open('given.txt').read())",
     "deaf": "while True:\n    try:\n        while True:\n            pass\n    except:\n        pass",
     "dies": "import os\nos._exit(3)",
-    "hog": "hog = []\nwhile True:\n    hog.append(bytearray(10**8))",
+    "hog": "hog = []\nwhile True:\n    hog.append(np.empty(10**8))",
     "leaves": "exit()",
     "broken": "def (",
     "warns": "import warnings\nwarnings.warn('careful')",
-    "last": "x += 1\nprint(x)",
+    "last": "x += 1\nprint(x, len(bytearray(2**30)))",
 }
 
 
@@ -293,7 +293,7 @@ def test_whatever_a_cell_does_costs_itself_alone(tmp_path):
             for name, source in TROUBLE.items()
         ]
     )
-    execute = CarefulExecute(course=str(tmp_path), timeout=2, megabytes=2000, iopub_timeout=1)
+    execute = CarefulExecute(course=str(tmp_path), timeout=3, megabytes=2000, iopub_timeout=1)
     resources = {"metadata": {"path": str(folder)}, "nbgrader": {"student": "ada"}}
     notebook, _ = execute.preprocess(notebook, resources)
 
@@ -302,7 +302,7 @@ def test_whatever_a_cell_does_costs_itself_alone(tmp_path):
     errors = {name: [out.ename for out in outs if out.output_type == "error"] for name, outs in outputs.items()}
     assert says["after"] == "2 2"
     assert says["reads"] == "given"
-    assert says["last"] == "3"  # after three kernels
+    assert says["last"] == "3 1073741824"  # after four kernels, with all of the memory
     assert errors["loop"][-1] == "CellTimeoutError"
     assert errors["deaf"] == ["CellTimeoutError"]
     assert errors["dies"] == ["KernelDied"]
@@ -353,6 +353,14 @@ def test_memory_is_watched_where_the_system_does_not_refuse_it(tmp_path, monkeyp
     assert noted == [("cell 1", "MemoryError")]
     assert outputs[0][-1].evalue == "this cell took more than 300 MB of memory, and its kernel was ended"
     assert outputs[1][0].text == "on\n"
+
+
+def test_memory_that_a_stopped_cell_holds_is_given_back(tmp_path):
+    hog = "import time\nhog = b'1' * (1200 * 2**20)\ntime.sleep(20)"
+    cells = ["x = 1", hog, "print(x, len(b'1' * (1200 * 2**20)))"]
+    outputs, noted = run(tmp_path / "x", cells, megabytes=2200, timeout=3)
+    assert noted == [("cell 2", "CellTimeoutError")]
+    assert outputs[2][0].text == "1 1258291200\n"
 
 
 def test_what_a_cell_prints_is_cut(tmp_path):

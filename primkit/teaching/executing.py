@@ -122,16 +122,19 @@ class CarefulExecute(Execute):  # type: ignore[misc]
         if cell.cell_type != "code" or not cell.source.strip():
             return cell, resources
         problem = self._run(cell, resources, index)
+        stopped, full = _failed_with("CellTimeoutError", cell), _failed_with("MemoryError", cell)
         if problem:
             self._blame(self.nb, index, *problem)
-            self.guilty.add(index)
-            self._catch_up(index, resources)
-        elif _timed_out(cell):
-            self.guilty.add(index)
+        elif stopped:
             says = f"took longer than {self._get_timeout(cell)} s and was interrupted"
             self._note(self.nb, index, "CellTimeoutError", says)
         else:
             self._note_error(index)
+        if problem or stopped or full:
+            self.guilty.add(index)
+        # The memory that a cell has taken would be missing to the others.
+        if problem or full or (stopped and self._memory() > self.megabytes / 2):
+            self._catch_up(index, resources)
         self._tidy(index)
         return cell, resources
 
@@ -228,13 +231,18 @@ class CarefulExecute(Execute):  # type: ignore[misc]
 
     async def _async_check_alive(self) -> None:
         """End a kernel that takes too much memory, where the system does not refuse it: Windows and macOS."""
+        if self._memory() > self.megabytes:
+            self.killed = f"this cell took more than {self.megabytes} MB of memory, and its kernel was ended"
+            await ensure_async(self.km.shutdown_kernel(now=True))
+            raise DeadKernelError(self.killed)
+        await super()._async_check_alive()
+
+    def _memory(self) -> float:
+        """Return what the kernel takes, in megabytes."""
         pid = getattr(getattr(self.km, "provisioner", None), "pid", None)
         with suppress(psutil.Error):
-            if pid and psutil.Process(pid).memory_info().rss > self.megabytes * MEGABYTE:
-                self.killed = f"this cell took more than {self.megabytes} MB of memory, and its kernel was ended"
-                await ensure_async(self.km.shutdown_kernel(now=True))
-                raise DeadKernelError(self.killed)
-        await super()._async_check_alive()
+            return psutil.Process(pid).memory_info().rss / MEGABYTE if pid else 0.0
+        return 0.0
 
     def _another_kernel(self) -> None:
         self.shutdown_kernel = "immediate"
@@ -290,8 +298,8 @@ def _within(text: str, points: float) -> bool:
         return False
 
 
-def _timed_out(cell: Any) -> bool:
-    return any(output.get("ename") == "CellTimeoutError" for output in cell.outputs)
+def _failed_with(name: str, cell: Any) -> bool:
+    return any(output.get("ename") == name for output in cell.outputs)
 
 
 def _copied(cell: Any) -> Any:

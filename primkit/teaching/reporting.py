@@ -55,8 +55,8 @@ def report(course: Course, name: str) -> Iterator[str]:
 
 
 def _usual(line: Line, most: int = USUAL) -> list[tuple[str, int]]:
-    """Return the most frequent wrong answers, the most frequent first."""
-    return sorted(line.wrong.items(), key=lambda item: (-item[1], item[0]))[:most]
+    """Return the most frequent wrong answers, the most frequent first; of as frequent ones, Python's errors last."""
+    return sorted(line.wrong.items(), key=lambda item: (-item[1], item[0][:1].isupper(), item[0]))[:most]
 
 
 def _said(seen: Overview) -> Iterator[str]:
