@@ -388,7 +388,7 @@ ANSWERS = {
             "any": (busy_any, 3, "no threshold"),
             "beside": (busy_beside, 3, "cells beside the board"),
             "table": (busy_table, 3, "raises IndexError"),
-            "half checked": (busy_half_checked, 3, "negative index"),
+            "half checked": (busy_half_checked, 4, "negative index"),
             "clipped": (busy_clipped, 3, "pushed onto the board"),
             "int": (busy_int, 4, "int for floor"),
             "round": (busy_round, 1, "round for floor"),

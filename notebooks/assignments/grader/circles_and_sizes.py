@@ -33,7 +33,7 @@ def known_radius(points: Floats, radius: float) -> Floats | None:
     """Return the centre with the least squared gaps to a circle of this radius, on the far side of the points."""
     if len(np.unique(points, axis=0)) < 2:
         return None
-    return gauss_newton(points, radius, beyond(points, radius))
+    return np.round(gauss_newton(points, radius, beyond(points, radius)), 12) + 0.0  # 0 instead of 1e-18
 
 
 def beyond(points: Floats, radius: float) -> Floats:

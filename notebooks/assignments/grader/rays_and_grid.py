@@ -434,9 +434,10 @@ def beside_the_board(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
 def on_borders(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     """Yield points on the borders of cells that floats hold exactly."""
     yield np.array([[-0.5, 0.25], [0.0, 0.0], [0.5, 0.0]]), CORNER, 0.25, (4, 4), 1
+    corner, shape = np.array([0.125, -0.25]), (6, 9)
     for _ in range(CASES):
-        points = rng.integers(-1, 10, (20, 2)) / 8
-        yield points, np.array([0.125, -0.25]), 0.125, (6, 9), 1
+        steps = rng.integers(0, [shape[0] + 1, shape[1] + 1], (20, 2))  # up to the far borders
+        yield corner + steps / 8, corner, 0.125, shape, 1
 
 
 BUSY_CELLS = task(
@@ -491,6 +492,11 @@ BUSY_CELLS = task(
             name="negative index",
         ),
         Fault(
+            "A point on the board's upper or right border lies on no cell: each cell leaves that border to the next.",
+            like=count_like(keep=closed_board),
+            name="board's far border kept",
+        ),
+        Fault(
             "Points beside the board are pushed onto its border: they are not on it.",
             like=count_like(keep=lambda cells, shape: np.clip(cells, 0, shape - 1)),
             name="pushed onto the board",
@@ -509,11 +515,6 @@ BUSY_CELLS = task(
             "A cell holds its lower border, and not its upper one.",
             like=count_like(lambda points, corner, h: np.ceil((points - corner) / h) - 1),
             name="upper border for lower",
-        ),
-        Fault(
-            "A point on the board's upper or right border lies on no cell: each cell leaves that border to the next.",
-            like=count_like(keep=closed_board),
-            name="board's far border kept",
         ),
         Fault(
             "shape says how many cells there are along x first, then along y.",

@@ -289,7 +289,7 @@ def judge_pillars(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None
     if rows.ndim != 2 or rows.shape[1] != 3:
         return f"got {shown(got)}, expected rows (x, y, radius)"
     if len(rows) != len(expected):
-        return f"got {len(rows)} pillars, expected {len(expected)}"
+        return f"got {len(rows)} pillar{'s' * (len(rows) != 1)}, expected {len(expected)}"
     for row in expected:
         mine = rows[np.argmin(np.hypot(*(rows[:, :2] - row[:2]).T))]
         off = 1000 * (mine - row)
