@@ -53,7 +53,19 @@ ORDER = (
         "explorer",
         "evaluation",
     ),
-    *("formats", "study", "plots", "bench", "widgets", "checks", "grading", "teaching", "__init__", "commands", "__main__"),
+    *(
+        "formats",
+        "study",
+        "plots",
+        "bench",
+        "widgets",
+        "checks",
+        "grading",
+        "teaching",
+        "__init__",
+        "commands",
+        "__main__",
+    ),
 )
 
 # Heavy libraries, and the one room that may import each. (The benchmarks call the paper's chain of libraries itself.)
