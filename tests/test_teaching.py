@@ -9,10 +9,11 @@ import shutil
 import subprocess
 import sys
 import warnings
-from contextlib import chdir, redirect_stderr, redirect_stdout
+from contextlib import chdir, redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
 
 import nbformat
+import psutil
 import pytest
 
 from primkit.__main__ import main
@@ -361,6 +362,15 @@ def test_memory_that_a_stopped_cell_holds_is_given_back(tmp_path):
     outputs, noted = run(tmp_path / "x", cells, megabytes=2200, timeout=3)
     assert noted == [("cell 2", "CellTimeoutError")]
     assert outputs[2][0].text == "1 1258291200\n"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="processes have no groups on Windows")
+def test_what_a_cell_has_started_ends_with_it(tmp_path):
+    start = "import subprocess, sys\nprint(subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(99)']).pid)"
+    outputs, _ = run(tmp_path / "x", [start, "import os\nos._exit(1)", "print('on')"])
+    with suppress(psutil.NoSuchProcess):
+        psutil.Process(int(outputs[0][0].text)).wait(5)  # raises TimeoutExpired while it goes on
+    assert outputs[2][0].text == "on\n"
 
 
 def test_what_a_cell_prints_is_cut(tmp_path):

@@ -141,7 +141,7 @@ class DriveState:
         self._rng, self._hand = np.random.default_rng(self.seed), np.random.default_rng([self.seed, 1])
         self._n_news = 0  # cells that have come or gone since the last look began
         self._rests = True  # stands, or sees nothing new
-        self._look()
+        self._scan()
         self.map()
 
     def step(self, wheels: ArrayLike = STANDING) -> Step:
@@ -169,7 +169,7 @@ class DriveState:
         """Turn the wheels for a period and scan; return the cells that are new and that are gone, shapes (M, 2)."""
         self.pose, self.stopped = advance(self.world, self.pose, wheels, self.lidar.period)
         before = self.scan
-        new, gone = self._look()
+        new, gone = self._scan()
         self._rests = len(new) == 0 or not np.any(wheels)
         self._write(before, wheels)
         return new, gone
@@ -223,7 +223,7 @@ class DriveState:
         """Whether a look is under way, or due as soon as the robot rests."""
         return self._finder.busy or (self._rests and self._n_news > 0)
 
-    def _look(self) -> tuple[Ints, Ints]:
+    def _scan(self) -> tuple[Ints, Ints]:
         """Scan from where the robot is, and return the cells that are new, and that are gone, shapes (M, 2)."""
         self.scan: Scans = scan(self.world, self.pose, self.lidar, rng=self._rng)
         self.n_scans += 1

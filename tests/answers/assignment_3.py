@@ -1,4 +1,4 @@
-"""Problem set 3: a pipe of known radius, a hexagon from six lines, how sure a radius is."""
+"""Problem set 3: a pipe of known radius, a hexagon from six lines, a nut or a coin, how sure a radius is."""
 
 # ruff: noqa: ARG001 (a wrong answer may leave out what it is given)
 
@@ -180,6 +180,64 @@ def hexagon_all_crossings(lines, inside):
     return [crossing(one, other) for one, other in combinations(lines, 2) if abs(math.sin(one[0] - other[0])) > 1e-9]
 
 
+# --- nut_or_coin -------------------------------------------------------------------------------------------
+
+
+def misfit(points):
+    return math.sqrt(np.mean(pk.fit_circle(points).signed_distance(points) ** 2))
+
+
+def name_by_waves(points, spread):
+    """Six waves around the centre: how high are they, beside what noise alone would make of them?"""
+    circle = pk.fit_circle(points)
+    x, y = (points - circle.center).T
+    turn, gap = np.arctan2(y, x), np.hypot(x, y) - circle.radius
+    design = np.column_stack([np.cos(6 * turn), np.sin(6 * turn), np.ones(len(turn))])
+    a, b, _ = np.linalg.lstsq(design, gap, rcond=None)[0]
+    return "nut" if math.hypot(a, b) > 5 * spread / math.sqrt(len(points)) else "coin"
+
+
+def name_by_rivals(points, spread):
+    """Circle against regular hexagon, each fitted; one number more costs the logarithm of the count of points."""
+    circle = pk.fit_circle(points)
+
+    def out(q):
+        x, y = points[:, 0] - q[0], points[:, 1] - q[1]
+        turn = (np.arctan2(y, x) - q[3] + math.pi / 6) % (math.pi / 3) - math.pi / 6
+        return np.hypot(x, y) * np.cos(turn) - q[2]
+
+    starts = [(*circle.center, 0.95 * circle.radius, turn) for turn in np.linspace(0, math.pi / 3, 4, endpoint=False)]
+    hexagon = min(least_squares(out, start, x_scale=(0.01, 0.01, 0.01, 0.1)).cost for start in starts)
+    gain = (circle.signed_distance(points) ** 2).sum() - 2 * hexagon
+    return "nut" if gain / spread**2 > math.log(len(points)) else "coin"
+
+
+def name_by_spread(points, spread):
+    """How much of the circle's misfit the spread explains."""
+    return ("coin", "nut")[misfit(points) > 1.35 * spread]
+
+
+def name_coin(points, spread):
+    return "coin"
+
+
+def name_one_millimetre(points, spread):
+    return "nut" if misfit(points) > 0.001 else "coin"
+
+
+def name_by_share(points, spread):
+    return "nut" if misfit(points) > 0.03 * pk.fit_circle(points).radius else "coin"
+
+
+def name_around_mean(points, spread):
+    away = np.linalg.norm(points - points.mean(axis=0), axis=1)
+    return "nut" if away.std() > 1.35 * spread else "coin"
+
+
+def name_turned_round(points, spread):
+    return {"nut": "coin", "coin": "nut"}[name_by_spread(points, spread)]
+
+
 # --- radius_std --------------------------------------------------------------------------------------------
 
 
@@ -273,6 +331,16 @@ ANSWERS = {
             "clockwise": (hexagon_clockwise, 1, "clockwise for counter-clockwise"),
             "left to right": (hexagon_left_to_right, 0, "corners not in order"),
             "all crossings": (hexagon_all_crossings, 0, None),
+        },
+    },
+    "nut_or_coin": {
+        "right": {"waves": name_by_waves, "rivals": name_by_rivals, "spread": name_by_spread},
+        "wrong": {
+            "always coin": (name_coin, 0, "one name for all"),
+            "one millimetre": (name_one_millimetre, 0, "a fixed limit"),
+            "by share": (name_by_share, 3, "a limit by size alone"),
+            "around the mean": (name_around_mean, 4, "mean taken for the centre"),
+            "turned round": (name_turned_round, 0, "names changed places"),
         },
     },
     "radius_std": {
