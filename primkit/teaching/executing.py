@@ -19,6 +19,7 @@ import filecmp
 import os
 import re
 import shutil
+import signal
 import site
 import tempfile
 from collections.abc import Iterator
@@ -79,6 +80,7 @@ class CarefulExecute(Execute):  # type: ignore[misc]
         """Run a notebook in a scratch copy of its folder."""
         self.faults: list[dict[str, Any]] = []
         self.guilty: set[int] = set()
+        self.groups: list[int] = []  # of processes: each kernel's, with what it has started
         folder = Path(resources["metadata"]["path"])
         with tempfile.TemporaryDirectory(prefix="primkit-", ignore_cleanup_errors=True) as scratch:
             self.scratch = Path(scratch)
@@ -91,6 +93,7 @@ class CarefulExecute(Execute):  # type: ignore[misc]
                 nb, resources = super().preprocess(nb, resources, km)
             finally:
                 resources["metadata"]["path"] = str(folder)
+                self._end_leftovers()
         self._numbers_only(nb)
         nb.metadata["primkit"] = {"faults": self.faults}
         return nb, resources
@@ -222,6 +225,7 @@ class CarefulExecute(Execute):  # type: ignore[misc]
         if (self.scratch / "truth.geojson").exists():
             options["env"][TRUTH] = str(self.scratch / "truth.geojson")
         super().start_new_kernel(**options)
+        self.groups += filter(None, [getattr(self.km.provisioner, "pgid", None)])
 
     def start_new_kernel_client(self) -> Any:
         """Prepare the kernel before the first cell runs."""
@@ -250,6 +254,13 @@ class CarefulExecute(Execute):  # type: ignore[misc]
         self.km = self.create_kernel_manager()
         self.start_new_kernel()
         self.start_new_kernel_client()
+
+    def _end_leftovers(self) -> None:
+        """End the programs that cells have started, where processes have groups: Linux and macOS."""
+        for group in self.groups:
+            with suppress(ProcessLookupError, PermissionError, AttributeError):
+                if group != os.getpgid(0):
+                    os.killpg(group, signal.SIGKILL)
 
     def _quietly(self, source: str) -> None:
         with suppress(DeadKernelError, RuntimeError):
