@@ -15,7 +15,7 @@ from primkit.changes import MovingGrid
 from primkit.measure import Detection
 from primkit.robot import AXLE, FASTEST, WHEEL, clearance
 from primkit.widgets.driving import DriveState
-from primkit.widgets.finder import MOST, Finder, beside
+from primkit.widgets.finder import MOST, Finder, beside, thinned
 from primkit.widgets.keys import HELD, STANDING, wheels_for
 from primkit.widgets.moving import NEAREST, left_within, with_one_moved
 from primkit.widgets.replay import Film
@@ -167,7 +167,7 @@ import gc, resource, sys, time
 import numpy as np
 import primkit as pk
 from primkit.widgets.driving import DriveState
-from primkit.widgets.finder import MOST, Finder, beside
+from primkit.widgets.finder import MOST, Finder, beside, thinned
 from primkit.widgets.keys import wheels_for
 from tests.test_scene import wandering
 
@@ -306,10 +306,21 @@ def test_of_very_many_cells_a_look_takes_a_part_and_the_last_look_all(world, mon
         state.step()
     assert len(state.grid) > 2 * MOST
     assert max(map(len, looked_at)) <= MOST
-    small, large = looked_at[-2:]
-    assert set(map(tuple, small)) <= set(map(tuple, large)), "a map that grows stays one"
+    assert len(looked_at[-1]) > MOST / 2
     state.finish()
     assert len(looked_at[-1]) == len(state.grid)
+
+
+def test_what_is_looked_at_grows_with_the_map():
+    """A cell that is looked at is looked at again, until there are too many; then some drop out, and none comes in."""
+    cells = np.stack(np.meshgrid(np.arange(60), np.arange(50)), axis=-1).reshape(-1, 2)
+    all_of_them = thinned(cells, 1000)
+    assert 500 < all_of_them.sum() <= 1000
+    for n in range(100, 3000, 100):
+        fewer = thinned(cells[:n], 1000)
+        assert not (all_of_them[:n] & ~fewer).any()
+    near = thinned(cells[: len(cells) - 10], 1000)
+    np.testing.assert_array_equal(near, all_of_them[:-10])
 
 
 def test_in_the_end_it_does_not_matter_how_long_looks_took(world):
