@@ -1,10 +1,12 @@
-"""Problem set 2: one scan cut at its widest gaps, a wall in fog, a corridor of two parallel walls."""
+"""Problem set 2: one scan cut at its widest gaps, K-Medians, a wall in fog, a corridor of two parallel walls."""
 
 # ruff: noqa: ARG001 (a wrong answer may leave out what it is given)
 
 import math
+import statistics
 
 import numpy as np
+from scipy.spatial.distance import cdist
 
 import primkit as pk
 
@@ -75,6 +77,86 @@ def cut_narrowest(points, k):
 def cut_by_linking(points, k):
     """A fixed reach, and k unused."""
     return pk.link(points, 0.05)
+
+
+# --- k_medians ---------------------------------------------------------------------------------------------
+
+
+def medians_by_loops(points, centers):
+    """Plain Python, with the median of the standard library."""
+    centers = [tuple(center) for center in centers.tolist()]
+    while True:
+        groups = [[] for _ in centers]
+        for x, y in points.tolist():
+            away = [abs(x - a) + abs(y - b) for a, b in centers]
+            groups[away.index(min(away))].append((x, y))
+        moved = [
+            tuple(statistics.median(values) for values in zip(*group, strict=True)) if group else center
+            for group, center in zip(groups, centers, strict=True)
+        ]
+        if moved == centers:
+            return centers
+        centers = moved
+
+
+def medians_by_labels(points, centers):
+    """Stops when no label changes; distances by SciPy."""
+    centers, labels = centers.copy(), None
+    while True:
+        mine = cdist(points, centers, "cityblock").argmin(axis=1)
+        if labels is not None and (mine == labels).all():
+            return centers
+        labels = mine
+        for k in np.unique(labels):
+            centers[k] = np.quantile(points[labels == k], 0.5, axis=0)
+
+
+def medians_general(points, centers, metric="cityblock", middle=np.median, rounds=100):
+    for _ in range(rounds):
+        labels = cdist(points, centers, metric).argmin(axis=1)
+        groups = [points[labels == k] for k in range(len(centers))]
+        pairs = zip(groups, centers, strict=True)
+        centers = np.array([middle(group, axis=0) if len(group) else center for group, center in pairs])
+    return centers
+
+
+def medians_means(points, centers):
+    return medians_general(points, centers, middle=np.mean)
+
+
+def medians_k_means(points, centers):
+    return medians_general(points, centers, metric="euclidean", middle=np.mean)
+
+
+def medians_euclid(points, centers):
+    return medians_general(points, centers, metric="euclidean")
+
+
+def medians_once(points, centers):
+    return medians_general(points, centers, rounds=1)
+
+
+def medians_low(points, centers):
+    return medians_general(points, centers, middle=lambda group, axis: np.sort(group, axis=axis)[(len(group) - 1) // 2])
+
+
+def medians_point(points, centers):
+    return medians_general(
+        points, centers, middle=lambda group, axis: group[cdist(group, group, "cityblock").sum(axis=axis).argmin()]
+    )
+
+
+def medians_nan(points, centers):
+    """The median of no points is none."""
+    found = medians_by_loops(points, centers)
+    labels = cdist(points, found, "cityblock").argmin(axis=1)
+    return np.array([np.median(points[labels == k], axis=0) for k in range(len(found))])
+
+
+def medians_lost(points, centers):
+    """Keeps only centres that have points."""
+    found = np.array(medians_by_loops(points, centers))
+    return found[np.unique(cdist(points, found, "cityblock").argmin(axis=1))]
 
 
 # --- wall_in_fog -------------------------------------------------------------------------------------------
@@ -248,6 +330,19 @@ ANSWERS = {
             "in range": (cut_in_range, 3, "gap in range"),
             "narrowest": (cut_narrowest, 1, "narrowest gaps"),
             "linking": (cut_by_linking, 1, None),
+        },
+    },
+    "k_medians": {
+        "right": {"loops": medians_by_loops, "labels": medians_by_labels},
+        "wrong": {
+            "means": (medians_means, 0, "mean for median"),
+            "k-means": (medians_k_means, 0, "K-Means for K-Medians"),
+            "euclid": (medians_euclid, 3, "straight distance"),
+            "once": (medians_once, 3, "one round"),
+            "low": (medians_low, 0, "one of two middle values"),
+            "point": (medians_point, 0, "a point for the median"),
+            "nan": (medians_nan, 4, "nan for a lonely centre"),
+            "lost": (medians_lost, 4, "lonely centre lost"),
         },
     },
     "wall_in_fog": {
