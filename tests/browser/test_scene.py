@@ -242,14 +242,15 @@ UNGUARD = """(root) => {
 
 
 @pytest.fixture
-def another_lab(context, folder):
-    """A page of its own: what is harmed there is seen by nobody else."""
+def another_lab(browser, address, folder):
+    """A browser of its own: Lab reloads a second page in the same one. What is harmed here is seen by nobody else."""
     (folder / "notebooks" / "unguarded.ipynb").write_text(notebook())
+    context = browser.new_context(base_url=address, viewport={"width": WIDE, "height": 1000})
     page = context.new_page()
     enter(page)
     with opened(page, "unguarded", 0) as lesson:
         yield lesson.page
-    page.close()
+    context.close()
 
 
 @pytest.mark.parametrize("keys", ["dd", "aabb", "xx"])
