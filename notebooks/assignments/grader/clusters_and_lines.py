@@ -188,27 +188,31 @@ def settled(points: Floats, centers: Floats) -> Floats:
     return medians_like()(points, centers)
 
 
+def by_streets(offset: Floats) -> Floats:
+    """Return city-block lengths."""
+    return np.abs(offset).sum(axis=-1)
+
+
+def straight(offset: Floats) -> Floats:
+    """Return lengths as the crow flies."""
+    return np.hypot(offset[..., 0], offset[..., 1])
+
+
 def medians_like(
-    away: Any = lambda offset: np.abs(offset).sum(axis=-1),
-    middle: Any = lambda group: np.median(group, axis=0),
-    rounds: int = 1000,
-    empty: Any = lambda center: center,
+    away: Any = by_streets, middle: Any = lambda group: np.median(group, axis=0), rounds: int = 1000
 ) -> Callable[[Floats, Floats], Floats]:
     """Return the algorithm, or a wrong way with one of its steps done in another way."""
 
-    def moved(points: Floats, centers: Floats) -> Floats:
-        labels = away(points[:, None] - centers).argmin(axis=1)
-        groups = [points[labels == k] for k in range(len(centers))]
-        return np.array(
-            [middle(group) if len(group) else empty(center) for group, center in zip(groups, centers, strict=True)]
-        )
-
     def settle(points: Floats, centers: Floats) -> Floats:
+        ends = centers.astype(float)
         for _ in range(rounds):
-            before, centers = centers, moved(points, centers)
-            if np.array_equal(before, centers):
+            before = ends.copy()
+            nearest = away(points[:, None] - before).argmin(axis=1)
+            for k in set(nearest.tolist()):  # a centre that no point comes to is not among them
+                ends[k] = middle(points[nearest == k])
+            if (ends == before).all():
                 break
-        return centers
+        return ends
 
     return settle
 
@@ -255,7 +259,7 @@ def one_group(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
 
 def several_groups(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     """Yield several groups, which need several rounds, and in which the kind of distance matters."""
-    by_euclid = medians_like(lambda offset: np.hypot(offset[..., 0], offset[..., 1]))
+    by_euclid = medians_like(straight)
     n = 0
     while n < 30:
         points, centers = blobs(rng, int(rng.integers(2, 5)))
@@ -298,7 +302,7 @@ K_MEDIANS = task(
         ),
         Fault(
             "Distances go along the streets, not as the crow flies: add what x and what y differ by.",
-            like=medians_like(lambda offset: np.hypot(offset[..., 0], offset[..., 1])),
+            like=medians_like(straight),
             name="straight distance",
         ),
         Fault(
