@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 from .circles import fit_circle
 from .evidence import CROOKED_COST, OF_CIRCLE, OF_SIDE, OF_SQUARE, Candidate, judged, price
 from .explain import BLURRED, CONTENDER, moved, polished, refined
-from .guess import QUARTERS, one_side_more
+from .guess import one_side_more
 from .outlines import Outlines, joined
 from .pieces import Cut, best_cuts
 from .refine import refine_hard
@@ -95,7 +95,7 @@ def at_a_glance(points: Floats, spread: float, *, soft: bool = True) -> Candidat
 class _Way:
     """One way to explain the points: a first guess, its fitted numbers, and the least that it can cost."""
 
-    guess: Circle | Outlines
+    guess: Circle | Cut
     square: bool
     fitted: Floats
     least: float
@@ -142,17 +142,16 @@ def _first_fit(points: Floats, spread: float) -> _Fit | None:
 def _ways(points: Floats, circle: Circle, cuts: dict[int, Cut], spread: float) -> list[_Way]:
     """Return all ways to explain the points, the simplest first, each with the least that it can cost."""
     n = len(points)
-    upright = Outlines(cuts[4].outline.angles[:, :1] + QUARTERS, cuts[4].outline.offsets)
     upright_squares = max(cuts[4].squares, n * _apart(cuts[3], n) ** 2)
     free = {k: np.tile(OF_SIDE * k, k) for k in cuts}
     round_squares = float((circle.signed_distance(points) ** 2).sum())
     least = {k: _cost(cuts[k].squares, free[k], n, spread) for k in cuts}
     return [
         _Way(circle, False, OF_CIRCLE, _cost(round_squares, OF_CIRCLE, n, spread)),
-        _Way(upright, True, OF_SQUARE, _cost(upright_squares, OF_SQUARE, n, spread)),
-        _Way(cuts[3].outline, False, free[3], least[3]),
-        _Way(cuts[4].outline, False, free[4], least[4] + CROOKED_COST),
-        _Way(cuts[5].outline, False, free[5], least[5]),
+        _Way(cuts[4], True, OF_SQUARE, _cost(upright_squares, OF_SQUARE, n, spread)),
+        _Way(cuts[3], False, free[3], least[3]),
+        _Way(cuts[4], False, free[4], least[4] + CROOKED_COST),
+        _Way(cuts[5], False, free[5], least[5]),
     ]
 
 
@@ -175,7 +174,8 @@ def _fitted(points: Floats, way: _Way, spread: float) -> Circle | Outlines | Non
     """Return the figure with the least squares near a way's guess; None where there is none."""
     if isinstance(way.guess, Circle):
         return way.guess  # Taubin's is as good as that
-    figure = refine_hard(points, way.guess, SIGMAS * spread, square=way.square)
+    guess = way.guess.upright if way.square else way.guess.outline
+    figure = refine_hard(points, guess, SIGMAS * spread, square=way.square)
     return figure if figure.sound()[0] else None
 
 
@@ -204,9 +204,9 @@ def _comes_near(points: Floats, rival: _Way, best: Candidate, spread: float, sof
 
     Pieces need not bend, so that their bound says little about a side too many. ``explain`` fits it in the same way.
     """
-    guess = rival.guess
-    assert isinstance(guess, Outlines)
+    assert isinstance(rival.guess, Cut)
     assert isinstance(best.figure, Outlines)
+    guess = rival.guess.outline
     if guess.angles.shape[1] == best.figure.angles.shape[1] + 1:
         guess = joined(guess, one_side_more(points, best.figure))
     figure = refined(points, guess, spread, square=False)

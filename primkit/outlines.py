@@ -32,6 +32,7 @@ Floats = NDArray[np.float64]
 # What a board can hold, and a sensor can tell: sides of at least 1.5 cm, corners that bend by 15 to 160 degrees.
 LEAST_SIDE = 0.015
 LEAST_TURN, MOST_TURN = np.radians(15), np.radians(160)
+QUARTERS = np.arange(4) * (np.pi / 2)  # the bearings of a rectangle's normals, from its first
 # Lines that bend by less than this (as a sine) meet far beyond any board; this keeps the corner finite.
 PARALLEL = 1e-12
 
@@ -77,13 +78,15 @@ class Outlines:
         y = (d * np.cos(before_a) - before_d * np.cos(a)) / bend
         return np.stack([x, y], axis=-1)
 
+    def ends(self) -> tuple[Floats, Floats]:
+        """Return the corners in which each side begins and ends, shape (C, K, 2) each, metres."""
+        corners = self.corners()
+        return corners, _after(corners)
+
     def spans(self) -> tuple[Floats, Floats]:
         """Return where each side begins and ends along its line, shape (C, K) each, metres."""
-        corners, a = self.corners(), self.angles
-        after = _after(corners)
-        begin = corners[..., 1] * np.cos(a) - corners[..., 0] * np.sin(a)
-        end = after[..., 1] * np.cos(a) - after[..., 0] * np.sin(a)
-        return begin, end
+        (first, last), c, s = self.ends(), np.cos(self.angles), np.sin(self.angles)
+        return first[..., 1] * c - first[..., 0] * s, last[..., 1] * c - last[..., 0] * s
 
     def sound(self) -> NDArray[np.bool_]:
         """Tell which outlines are closed and convex, with sides and corners that a sensor can tell, shape (C,)."""

@@ -19,11 +19,12 @@ Source: Bellman (1961), "On the approximation of curves by line segments using d
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .outlines import Outlines, from_angle_order
+from .outlines import QUARTERS, Outlines, from_angle_order
 
 Floats = NDArray[np.float64]
 
@@ -38,16 +39,30 @@ class Cut:
 
     Parameters
     ----------
-    outline : Outlines (one row)
-        The pieces' lines; not always ``sound``.
+    moments : array, shape (6, K)
+        Sums of 1, x, y, xx, yy and xy over the points of each piece.
     squares : float
         Sum of the squared distances of the points from their piece's line, square metres; points near the cuts are
         supposed to be as close as the others. The pieces need not meet in corners, nor bend: an outline with so many
         sides hardly comes closer to the points.
     """
 
-    outline: Outlines
+    moments: Floats
     squares: float
+
+    @cached_property
+    def outline(self) -> Outlines:
+        """The pieces' best lines, one row, their normals away from the origin; not always ``sound``."""
+        xx, yy, xy = _scatter(self.moments)
+        angles = 0.5 * np.arctan2(2 * xy, xx - yy) + np.pi / 2  # across the direction of most scatter
+        offsets = (np.cos(angles) * self.moments[1] + np.sin(angles) * self.moments[2]) / self.moments[0]
+        return from_angle_order(np.where(offsets < 0, angles + np.pi, angles)[None], np.abs(offsets)[None])
+
+    @property
+    def upright(self) -> Outlines:
+        """Four pieces' lines with right angles, as the first of them lies."""
+        outline = self.outline
+        return Outlines(outline.angles[:, :1] + QUARTERS, outline.offsets)
 
 
 def best_cuts(points: Floats) -> dict[int, Cut]:
@@ -75,7 +90,7 @@ def best_cuts(points: Floats) -> dict[int, Cut]:
         if k >= FEWEST and np.isfinite(best[-1]):
             ends = _traced(last_cuts)
             pieces = moments[:, ends[:-1], ends[1:]]
-            cuts[k] = Cut(_lines(pieces), float(best[-1]) * len(points) / float(pieces[0].sum()))
+            cuts[k] = Cut(pieces, float(best[-1]) * len(points) / float(pieces[0].sum()))
     return cuts
 
 
@@ -123,11 +138,3 @@ def _traced(last_cuts: list[NDArray[np.intp]]) -> list[int]:
     for cut in reversed(last_cuts):
         ends.append(int(cut[ends[-1]]))
     return [*ends, 0][::-1]
-
-
-def _lines(moments: Floats) -> Outlines:
-    """Return the best lines of pieces as an outline, their normals away from the origin."""
-    xx, yy, xy = _scatter(moments)
-    angles = 0.5 * np.arctan2(2 * xy, xx - yy) + np.pi / 2  # across the direction of most scatter
-    offsets = (np.cos(angles) * moments[1] + np.sin(angles) * moments[2]) / moments[0]
-    return from_angle_order(np.where(offsets < 0, angles + np.pi, angles)[None], np.abs(offsets)[None])
