@@ -50,6 +50,7 @@ CROOKED_COST = 20.0
 OF_CIRCLE = np.array([2.0, 2.0, 1.0])
 OF_SIDE = np.array([1.0, 3.0])
 OF_SQUARE = np.array([4.0, 4.0, 4.0, 4.0, 3.0])
+OF_FREE_SIDES = {k: np.tile(OF_SIDE * k, k) for k in (3, 4, 5)}  # a side has a kth of the points
 OF_WALL = np.array([1.0, 3.0, 1.0, 1.0])
 
 
@@ -116,7 +117,7 @@ def judged(points: Floats, figure: Circle | Outlines, spread: float, *, square: 
         corners, after = figure.ends()
         lengths, k = np.hypot(*(after - corners)[0].T), corners.shape[1]
         places = _between(corners[0], after[0])
-        fitted = OF_SQUARE if square else np.tile(OF_SIDE * k, k)  # a side has a kth of the points
+        fitted = OF_SQUARE if square else OF_FREE_SIDES[k]
         distance = figure.distances(points)[0].max(axis=1)
         share, _, each = shares(points, figure, spread)
         on_it, log_likelihood = float(share.sum()), float(each[0])

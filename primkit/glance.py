@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .circles import fit_circle
-from .evidence import CROOKED_COST, OF_CIRCLE, OF_SIDE, OF_SQUARE, Candidate, judged, price
+from .evidence import CROOKED_COST, OF_CIRCLE, OF_FREE_SIDES, OF_SQUARE, Candidate, judged, price
 from .explain import BLURRED, CONTENDER, moved, polished, refined
 from .guess import one_side_more
 from .outlines import Outlines, joined
@@ -55,7 +55,6 @@ CERTAIN = 10.0  # by so much a shape must be ahead: very strong evidence (Kass a
 # A triangle fills at most half of a rectangle. So their outlines part by 0.27 of the triangle's incircle's radius (root
 # mean square, the least over all triangles and rectangles; found numerically); half of that allows for uneven points.
 APART = 0.135
-MOST_INCIRCLE = 0.1  # m: no triangle on a board has a larger one
 
 
 def at_a_glance(points: Floats, spread: float, *, soft: bool = True) -> Candidate | None:
@@ -142,8 +141,9 @@ def _first_fit(points: Floats, spread: float) -> _Fit | None:
 def _ways(points: Floats, circle: Circle, cuts: dict[int, Cut], spread: float) -> list[_Way]:
     """Return all ways to explain the points, the simplest first, each with the least that it can cost."""
     n = len(points)
-    upright_squares = max(cuts[4].squares, n * _apart(cuts[3], n) ** 2)
-    free = {k: np.tile(OF_SIDE * k, k) for k in cuts}
+    radius = float(np.sqrt((points**2).sum() / n))
+    upright_squares = max(cuts[4].squares, n * _apart(cuts[3], n, radius) ** 2)
+    free = {k: OF_FREE_SIDES[k] for k in cuts}
     round_squares = float((circle.signed_distance(points) ** 2).sum())
     least = {k: _cost(cuts[k].squares, free[k], n, spread) for k in cuts}
     return [
@@ -160,10 +160,14 @@ def _cost(squares: float, fitted: Floats, n_points: int, spread: float) -> float
     return squares / spread**2 + price(fitted, n_points, spread)
 
 
-def _apart(triangle: Cut, n_points: int) -> float:
-    """Return by how much any rectangle must miss points on this triangle, as a root mean square, metres."""
+def _apart(triangle: Cut, n_points: int, radius: float) -> float:
+    """Return by how much any rectangle must miss points on this triangle, as a root mean square, metres.
+
+    No incircle is larger than ``radius``, the root mean square distance of the points from their middle: from any
+    place within a triangle, even the mean distance to its outline is more.
+    """
     missed = float(np.sqrt(triangle.squares / n_points))
-    if missed > APART * MOST_INCIRCLE or not triangle.outline.sound()[0]:
+    if missed > APART * radius or not triangle.outline.sound()[0]:
         return 0.0
     polygon = triangle.outline.polygon()
     incircle = 2 * polygon.area / polygon.perimeter

@@ -79,7 +79,8 @@ def best_cuts(points: Floats) -> dict[int, Cut]:
     between two knots a cut lies, is left open, and the points there belong to no piece: so none is on a wrong one.
     """
     points = _from_farthest(points)
-    knots = np.linspace(0, len(points), min(KNOTS, len(points)) + 1).astype(int)
+    n_knots = min(KNOTS, len(points))
+    knots = np.arange(n_knots + 1) * len(points) // n_knots
     moments = _moments_between(points, knots)[:, 1:, :-1]  # a piece begins a knot after its cut, or ends a knot before
     squares = np.where(_long_enough(points, knots), _squares(moments), np.inf)
     best, last_cuts, cuts = squares[0], [], {}  # best[j]: the least squares of so many pieces that end at knot j
@@ -98,8 +99,10 @@ def _from_farthest(points: Floats) -> Floats:
     """Return the points in the order of their bearings, beginning where they are farthest; a lone stray is not."""
     points = points[np.argsort(np.arctan2(points[:, 1], points[:, 0]), kind="stable")]
     far = (points**2).sum(axis=1)
-    with_both_neighbours = np.minimum(far, np.minimum(np.roll(far, 1), np.roll(far, -1)))
-    return np.roll(points, -int(with_both_neighbours.argmax()), axis=0)
+    ring = np.concatenate([far[-1:], far, far[:1]])
+    with_both_neighbours = np.minimum(far, np.minimum(ring[:-2], ring[2:]))
+    first = int(with_both_neighbours.argmax())
+    return np.concatenate([points[first:], points[:first]])
 
 
 def _moments_between(points: Floats, knots: NDArray[np.intp]) -> Floats:
