@@ -166,11 +166,11 @@ def _apart(triangle: Cut, n_points: int, radius: float) -> float:
     No incircle is larger than ``radius``, the root mean square distance of the points from their middle: from any
     place within a triangle, even the mean distance to its outline is more.
     """
-    missed = float(np.sqrt(triangle.squares / n_points))
-    if missed > APART * radius or not triangle.outline.sound()[0]:
+    missed, outline = float(np.sqrt(triangle.squares / n_points)), triangle.outline
+    if missed > APART * radius or not outline.sound()[0]:
         return 0.0
-    polygon = triangle.outline.polygon()
-    incircle = 2 * polygon.area / polygon.perimeter
+    begin, end = outline.spans()
+    incircle = float(np.average(outline.offsets, weights=end - begin))  # twice the area over the perimeter
     return max(0.0, APART * incircle - missed)
 
 

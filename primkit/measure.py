@@ -30,7 +30,7 @@ from .shapes import Circle, Kind, Shape
 Floats = NDArray[np.float64]
 
 NEIGHBOURS = 10  # enough for a line with its spread, few enough for a curve to be straight
-ENOUGH_PLACES = 400  # they tell the median to a few percent
+ENOUGH_PLACES = 250  # they tell the median to a few percent
 
 
 @dataclass(frozen=True, eq=False)

@@ -62,7 +62,7 @@ def refine_hard(points: Floats, guess: Outlines, reach: float, *, square: bool =
     for _ in range(HARD_ROUNDS):
         r = guess.distances(points)
         owner = r.argmax(axis=2)
-        near = np.abs(np.take_along_axis(r, owner[..., None], axis=2)) <= reach
+        near = np.abs(r.max(axis=2, keepdims=True)) <= reach
         given = (owner[..., None] == sides) & near
         if before is not None and np.array_equal(given, before):
             break
