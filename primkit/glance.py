@@ -50,11 +50,14 @@ STRAY = 20.0  # cost of a point that comes from nowhere, and not from the outlin
 # Pieces that are free to be anywhere come closer than sides that meet in corners: a simple shape is fitted first even
 # if its bound is so many times the least.
 ROUGHLY = 2.0
+FAR = 10.0  # no circle needs to be fitted if its bound is even so many times the least
 OWN_POINTS = 8  # of each side: a side with fewer could as well be a few strays
 CERTAIN = 10.0  # by so much a shape must be ahead: very strong evidence (Kass and Raftery, 1995)
 # A triangle fills at most half of a rectangle. So their outlines part by 0.27 of the triangle's incircle's radius (root
 # mean square, the least over all triangles and rectangles; found numerically); half of that allows for uneven points.
 APART = 0.135
+# Five straight pieces miss a circle by 0.059 of its radius (chords over a fifth of it each); half of that, likewise.
+BENT = 0.03
 
 
 def at_a_glance(points: Floats, spread: float, *, soft: bool = True) -> Candidate | None:
@@ -92,9 +95,12 @@ def at_a_glance(points: Floats, spread: float, *, soft: bool = True) -> Candidat
 
 @dataclass(frozen=True, eq=False)
 class _Way:
-    """One way to explain the points: a first guess, its fitted numbers, and the least that it can cost."""
+    """One way to explain the points: a first guess, its fitted numbers, and the least that it can cost.
 
-    guess: Circle | Cut
+    The guess is None for a circle that was not fitted, because straight pieces come too close for that.
+    """
+
+    guess: Circle | Cut | None
     square: bool
     fitted: Floats
     least: float
@@ -116,11 +122,13 @@ def _first_fit(points: Floats, spread: float) -> _Fit | None:
     """
     kept = points
     for _ in range(LOOKS):
-        circle, cuts = fit_circle(kept, "taubin"), best_cuts(kept)
-        if circle is None or len(cuts) < 3:
+        cuts = best_cuts(kept)
+        if len(cuts) < 3:
             return None
-        ways = _ways(kept, circle, cuts, spread)
+        ways = _ways(kept, cuts, spread)
         first, figure = _simplest(kept, ways, spread)
+        if figure is None:
+            return None
         distance, own = _distances(kept, figure, spread)
         on_it = np.abs(distance) <= SIGMAS * spread
         if on_it.mean() >= NEARLY_ALL:
@@ -138,21 +146,25 @@ def _first_fit(points: Floats, spread: float) -> _Fit | None:
     return None if simpler or own < OWN_POINTS else _Fit(first, figure, rivals)
 
 
-def _ways(points: Floats, circle: Circle, cuts: dict[int, Cut], spread: float) -> list[_Way]:
+def _ways(points: Floats, cuts: dict[int, Cut], spread: float) -> list[_Way]:
     """Return all ways to explain the points, the simplest first, each with the least that it can cost."""
     n = len(points)
     radius = float(np.sqrt((points**2).sum() / n))
     upright_squares = max(cuts[4].squares, n * _apart(cuts[3], n, radius) ** 2)
-    free = {k: OF_FREE_SIDES[k] for k in cuts}
-    round_squares = float((circle.signed_distance(points) ** 2).sum())
-    least = {k: _cost(cuts[k].squares, free[k], n, spread) for k in cuts}
-    return [
-        _Way(circle, False, OF_CIRCLE, _cost(round_squares, OF_CIRCLE, n, spread)),
+    least = {k: _cost(cuts[k].squares, OF_FREE_SIDES[k], n, spread) for k in cuts}
+    straight = [
         _Way(cuts[4], True, OF_SQUARE, _cost(upright_squares, OF_SQUARE, n, spread)),
-        _Way(cuts[3], False, free[3], least[3]),
-        _Way(cuts[4], False, free[4], least[4] + CROOKED_COST),
-        _Way(cuts[5], False, free[5], least[5]),
+        _Way(cuts[3], False, OF_FREE_SIDES[3], least[3]),
+        _Way(cuts[4], False, OF_FREE_SIDES[4], least[4] + CROOKED_COST),
+        _Way(cuts[5], False, OF_FREE_SIDES[5], least[5]),
     ]
+    squares_of_round = n * max(0.0, BENT * radius - float(np.sqrt(cuts[5].squares / n))) ** 2
+    least_round, circle = _cost(squares_of_round, OF_CIRCLE, n, spread), None
+    if least_round <= FAR * min(way.least for way in straight):
+        circle = fit_circle(points, "taubin")
+        squares_of_round = np.inf if circle is None else float((circle.signed_distance(points) ** 2).sum())
+        least_round = _cost(squares_of_round, OF_CIRCLE, n, spread)
+    return [_Way(circle, False, OF_CIRCLE, least_round), *straight]
 
 
 def _cost(squares: float, fitted: Floats, n_points: int, spread: float) -> float:
@@ -175,20 +187,21 @@ def _apart(triangle: Cut, n_points: int, radius: float) -> float:
 
 
 def _fitted(points: Floats, way: _Way, spread: float) -> Circle | Outlines | None:
-    """Return the figure with the least squares near a way's guess; None where there is none."""
-    if isinstance(way.guess, Circle):
-        return way.guess  # Taubin's is as good as that
-    guess = way.guess.upright if way.square else way.guess.outline
-    figure = refine_hard(points, guess, SIGMAS * spread, square=way.square)
+    """Return a way's figure, near enough for a last polish; None where there is none."""
+    if not isinstance(way.guess, Cut):
+        return way.guess  # Taubin's circle is as good as that
+    figure = way.guess.outline  # the best line of each piece
+    if way.square or not figure.sound()[0]:
+        figure = refine_hard(points, way.guess.upright if way.square else figure, SIGMAS * spread, square=way.square)
     return figure if figure.sound()[0] else None
 
 
-def _simplest(points: Floats, ways: list[_Way], spread: float) -> tuple[_Way, Circle | Outlines]:
-    """Return the simplest way whose bound is small, and its figure; a circle, the first of all ways, is always one."""
+def _simplest(points: Floats, ways: list[_Way], spread: float) -> tuple[_Way, Circle | Outlines | None]:
+    """Return the simplest way whose bound is small and that can be fitted, and its figure; None where there is none."""
     least = min(way.least for way in ways)
     first = next(way for way in ways if way.least <= ROUGHLY * least)
     figure = _fitted(points, first, spread)
-    if figure is not None:
+    if figure is not None or len(ways) == 1:
         return first, figure
     return _simplest(points, [way for way in ways if way is not first], spread)
 
