@@ -93,6 +93,29 @@ def at_a_glance(points: Floats, spread: float, *, soft: bool = True) -> Candidat
     return moved(best, middle)
 
 
+def at_another_glance(points: Floats, before: Candidate, spread: float, *, soft: bool = True) -> Candidate | None:
+    """Return what was told at a glance, fitted anew to a few points more; None where it should be looked at anew.
+
+    What was beyond doubt stays so while nearly all points lie on it.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        Metres: those that ``at_a_glance`` saw, and a few more.
+    before : Candidate
+        What it returned for them.
+    spread, soft
+        As for ``at_a_glance``.
+    """
+    middle = points.mean(axis=0)
+    local, figure = points - middle, moved(before, -middle).figure
+    best = None if figure is None else polished(local, figure, spread, soft=soft, square=before.square)
+    if best is None or best.figure is None or min(best.seen) < ALL_AROUND:
+        return None
+    on_it = np.abs(_distances(local, best.figure, spread)[0]) <= SIGMAS * spread
+    return moved(best, middle) if on_it.mean() >= NEARLY_ALL else None
+
+
 @dataclass(frozen=True, eq=False)
 class _Way:
     """One way to explain the points: a first guess, its fitted numbers, and the least that it can cost.
@@ -150,7 +173,7 @@ def _ways(points: Floats, cuts: dict[int, Cut], spread: float) -> list[_Way]:
     """Return all ways to explain the points, the simplest first, each with the least that it can cost."""
     n = len(points)
     radius = float(np.sqrt((points**2).sum() / n))
-    upright_squares = max(cuts[4].squares, n * _apart(cuts[3], n, radius) ** 2)
+    upright_squares = max(cuts[4].squares, n * _apart(cuts[3], n, spread) ** 2)
     least = {k: _cost(cuts[k].squares, OF_FREE_SIDES[k], n, spread) for k in cuts}
     straight = [
         _Way(cuts[4], True, OF_SQUARE, _cost(upright_squares, OF_SQUARE, n, spread)),
@@ -172,15 +195,15 @@ def _cost(squares: float, fitted: Floats, n_points: int, spread: float) -> float
     return squares / spread**2 + price(fitted, n_points, spread)
 
 
-def _apart(triangle: Cut, n_points: int, radius: float) -> float:
+def _apart(triangle: Cut, n_points: int, spread: float) -> float:
     """Return by how much any rectangle must miss points on this triangle, as a root mean square, metres.
 
-    No incircle is larger than ``radius``, the root mean square distance of the points from their middle: from any
-    place within a triangle, even the mean distance to its outline is more.
+    That is asked only where the triangle explains the points: else others are nearer than it is.
     """
-    missed, outline = float(np.sqrt(triangle.squares / n_points)), triangle.outline
-    if missed > APART * radius or not outline.sound()[0]:
+    missed = float(np.sqrt(triangle.squares / n_points))
+    if missed > SIGMAS * spread or not triangle.outline.sound()[0]:
         return 0.0
+    outline = triangle.outline
     begin, end = outline.spans()
     incircle = float(np.average(outline.offsets, weights=end - begin))  # twice the area over the perimeter
     return max(0.0, APART * incircle - missed)

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,10 +28,13 @@ from .explain import candidates
 from .scatter import LEAST_SPREAD, SIGMAS, noise_of
 from .shapes import Circle, Kind, Shape
 
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
+
 Floats = NDArray[np.float64]
 
 NEIGHBOURS = 10  # enough for a line with its spread, few enough for a curve to be straight
-ENOUGH_PLACES = 250  # they tell the median to a few percent
+ENOUGH_PLACES = 250  # they tell whether there is any noise
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,7 +222,8 @@ def spread_of(points: ArrayLike) -> float:
     """Return the standard deviation of points from the outlines that they lie on, before any is known, metres.
 
     Each point's neighbours lie on a piece of outline that is nearly straight: what they scatter across it is
-    the spread, and the median over some hundreds of points does not mind corners and strays.
+    the spread, and the median over all points does not mind corners and strays. Where a look at some hundred places
+    tells that there is no noise, that is enough.
 
     Notes
     -----
@@ -234,8 +239,14 @@ def spread_of(points: ArrayLike) -> float:
     points = as_points(points)
     if len(points) < NEIGHBOURS:
         return LEAST_SPREAD
-    some = points[:: -(-len(points) // ENOUGH_PLACES)]
-    near = cKDTree(points).query(some, NEIGHBOURS)[1]  # (M, NEIGHBOURS)
+    tree, every = cKDTree(points), -(-len(points) // ENOUGH_PLACES)
+    at_some_places = _spread_at(points[::every], points, tree)
+    return at_some_places if every == 1 or at_some_places == LEAST_SPREAD else _spread_at(points, points, tree)
+
+
+def _spread_at(places: Floats, points: Floats, tree: cKDTree) -> float:
+    """Return the spread, judged by what the points next to some places scatter, shape (M, 2); a tree has them all."""
+    near = tree.query(places, NEIGHBOURS)[1]  # (M, NEIGHBOURS)
     x, y = points[:, 0][near], points[:, 1][near]
     x, y = x - x.mean(axis=1, keepdims=True), y - y.mean(axis=1, keepdims=True)
     xx, yy, xy = (x * x).sum(axis=1), (y * y).sum(axis=1), (x * y).sum(axis=1)

@@ -81,7 +81,7 @@ def best_cuts(points: Floats) -> dict[int, Cut]:
     points = _from_farthest(points)
     n_knots = min(KNOTS, len(points))
     knots = np.arange(n_knots + 1) * len(points) // n_knots
-    moments = _moments_between(points, knots)[:, 1:, :-1]  # a piece begins a knot after its cut, or ends a knot before
+    moments = _moments_between(points, knots)
     squares = np.where(_long_enough(points, knots), _squares(moments), np.inf)
     best, last_cuts, cuts = squares[0], [], {}  # best[j]: the least squares of so many pieces that end at knot j
     for k in range(2, MOST + 1):
@@ -106,12 +106,15 @@ def _from_farthest(points: Floats) -> Floats:
 
 
 def _moments_between(points: Floats, knots: NDArray[np.intp]) -> Floats:
-    """Return the sums of 1, x, y, xx, yy and xy over the points from one knot to another, shape (6, M + 1, M + 1)."""
+    """Return the sums of 1, x, y, xx, yy and xy over the points of each piece, shape (6, M, M).
+
+    A piece from one cut to another begins a knot after the first, and ends a knot before the second.
+    """
     x, y = points.T
     sums = np.zeros((6, len(points) + 1))
     np.cumsum([np.ones_like(x), x, y, x * x, y * y, x * y], axis=1, out=sums[:, 1:])
     sums = sums[:, knots]
-    return sums[:, None, :] - sums[:, :, None]
+    return sums[:, None, :-1] - sums[:, 1:, None]
 
 
 def _long_enough(points: Floats, knots: NDArray[np.intp]) -> NDArray[np.bool_]:
@@ -125,13 +128,14 @@ def _scatter(moments: Floats) -> tuple[Floats, Floats, Floats]:
     """Return the scatter sums xx, yy and xy about the mean of each piece."""
     n, x, y, xx, yy, xy = moments
     n = np.maximum(n, 1.0)
-    return xx - x * x / n, yy - y * y / n, xy - x * y / n
+    mean_x, mean_y = x / n, y / n
+    return xx - x * mean_x, yy - y * mean_y, xy - x * mean_y
 
 
 def _squares(moments: Floats) -> Floats:
     """Return the sum of squared distances from the best line of each piece; infinite where there is none."""
     xx, yy, xy = _scatter(moments)
-    across = (xx + yy - np.hypot(xx - yy, 2 * xy)) / 2  # the smaller eigenvalue of the scatter matrix
+    across = (xx + yy - np.sqrt((xx - yy) ** 2 + 4 * xy**2)) / 2  # the smaller eigenvalue of the scatter matrix
     return np.where(moments[0] >= 2, np.maximum(across, 0.0), np.inf)
 
 
