@@ -58,6 +58,7 @@ CERTAIN = 10.0  # by so much a shape must be ahead: very strong evidence (Kass a
 APART = 0.135
 # Five straight pieces miss a circle by 0.059 of its radius (chords over a fifth of it each); half of that, likewise.
 BENT = 0.03
+ASTRAY = 10.0  # spreads; a triangle that misses the points by more in the mean does not explain them, few strays or not
 
 
 def at_a_glance(points: Floats, spread: float, *, soft: bool = True) -> Candidate | None:
@@ -201,7 +202,7 @@ def _apart(triangle: Cut, n_points: int, spread: float) -> float:
     That is asked only where the triangle explains the points: else others are nearer than it is.
     """
     missed = float(np.sqrt(triangle.squares / n_points))
-    if missed > SIGMAS * spread or not triangle.outline.sound()[0]:
+    if missed > ASTRAY * spread or not triangle.outline.sound()[0]:
         return 0.0
     outline = triangle.outline
     begin, end = outline.spans()
