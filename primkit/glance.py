@@ -173,7 +173,6 @@ def _first_fit(points: Floats, spread: float) -> _Fit | None:
 def _ways(points: Floats, cuts: dict[int, Cut], spread: float) -> list[_Way]:
     """Return all ways to explain the points, the simplest first, each with the least that it can cost."""
     n = len(points)
-    radius = float(np.sqrt((points**2).sum() / n))
     upright_squares = max(cuts[4].squares, n * _apart(cuts[3], n, spread) ** 2)
     least = {k: _cost(cuts[k].squares, OF_FREE_SIDES[k], n, spread) for k in cuts}
     straight = [
@@ -182,13 +181,18 @@ def _ways(points: Floats, cuts: dict[int, Cut], spread: float) -> list[_Way]:
         _Way(cuts[4], False, OF_FREE_SIDES[4], least[4] + CROOKED_COST),
         _Way(cuts[5], False, OF_FREE_SIDES[5], least[5]),
     ]
-    squares_of_round = n * max(0.0, BENT * radius - float(np.sqrt(cuts[5].squares / n))) ** 2
-    least_round, circle = _cost(squares_of_round, OF_CIRCLE, n, spread), None
-    if least_round <= FAR * min(way.least for way in straight):
+    return [_round(points, cuts[5], min(way.least for way in straight), spread), *straight]
+
+
+def _round(points: Floats, five: Cut, least: float, spread: float) -> _Way:
+    """Return the circle's way, fitted where the best five pieces and the least cost of straight ways leave it room."""
+    n, circle = len(points), None
+    radius = float(np.sqrt((points**2).sum() / n))
+    squares = n * max(0.0, BENT * radius - float(np.sqrt(five.squares / n))) ** 2
+    if _cost(squares, OF_CIRCLE, n, spread) <= FAR * least:
         circle = fit_circle(points, "taubin")
-        squares_of_round = np.inf if circle is None else float((circle.signed_distance(points) ** 2).sum())
-        least_round = _cost(squares_of_round, OF_CIRCLE, n, spread)
-    return [_Way(circle, False, OF_CIRCLE, least_round), *straight]
+        squares = np.inf if circle is None else float((circle.signed_distance(points) ** 2).sum())
+    return _Way(circle, False, OF_CIRCLE, _cost(squares, OF_CIRCLE, n, spread))
 
 
 def _cost(squares: float, fitted: Floats, n_points: int, spread: float) -> float:

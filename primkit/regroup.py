@@ -114,7 +114,7 @@ def grown(old: Group, points: Floats, spread: float, *, soft: bool = True) -> Gr
         None where all explanations should be looked for: many points are new, others are gone, what the group is was
         in doubt, or it is so now.
     """
-    in_doubt = not old.choice.at_a_glance and (len(old.ranked) < 2 or _lead(old.ranked) < SURE)
+    in_doubt = not old.choice.at_a_glance and not _sure(old.ranked)
     if in_doubt or not 1 <= len(points) / old.n_thorough <= 1 + FEW_NEW or not _holds(points, old.points):
         return None
     if old.choice.at_a_glance:
@@ -122,16 +122,16 @@ def grown(old: Group, points: Floats, spread: float, *, soft: bool = True) -> Gr
         ranked = [] if best is None else [best]
     else:
         ranked = explained_again(points, old.ranked, spread, soft=soft)
-        if len(ranked) < 2 or ranked[0].kind != old.ranked[0].kind or _lead(ranked) < SURE:
-            ranked = []
-    if not ranked:
+    if not ranked or ranked[0].kind != old.ranked[0].kind or not (old.choice.at_a_glance or _sure(ranked)):
         return None
     return Group(points, ranked, spread, old.n_thorough, replace(old.choice, points=points, ranked=ranked))
 
 
-def _lead(ranked: list[Candidate]) -> float:
-    """Return by how much the best explanation is ahead of the best one of another kind."""
-    return next((c.cost for c in ranked if c.kind != ranked[0].kind), float("inf")) - ranked[0].cost
+def _sure(ranked: list[Candidate]) -> bool:
+    """Tell whether the best explanation is far ahead of the best one of another kind."""
+    if len(ranked) < 2:
+        return False
+    return next((c.cost for c in ranked if c.kind != ranked[0].kind), float("inf")) - ranked[0].cost >= SURE
 
 
 def _holds(points: Floats, fewer: Floats) -> bool:
