@@ -34,6 +34,7 @@ Floats = NDArray[np.float64]
 
 GAP = 0.012  # m: a stretch of outline within this of a point counts as seen
 STEPS_PER_SIDE = 50  # a side is looked at in so many places, a circle in four times as many
+STEPS = (np.arange(STEPS_PER_SIDE) + 0.5)[:, None] / STEPS_PER_SIDE
 
 # What is supposed before the points are looked at. Each number of a shape is known to about a centimetre. An outline
 # is seen nearly all around: each metre that was not seen is as unlikely as one in e^40. And four sides without right
@@ -49,6 +50,7 @@ CROOKED_COST = 20.0
 OF_CIRCLE = np.array([2.0, 2.0, 1.0])
 OF_SIDE = np.array([1.0, 3.0])
 OF_SQUARE = np.array([4.0, 4.0, 4.0, 4.0, 3.0])
+OF_FREE_SIDES = {k: np.tile(OF_SIDE * k, k) for k in (3, 4, 5)}  # a side has a kth of the points
 OF_WALL = np.array([1.0, 3.0, 1.0, 1.0])
 
 
@@ -107,18 +109,19 @@ def judged(points: Floats, figure: Circle | Outlines, spread: float, *, square: 
         Whether four sides were fitted with right angles.
     """
     if isinstance(figure, Circle):
-        shape: Shape = figure
         lengths, fitted = np.array([figure.perimeter]), OF_CIRCLE
+        places = _places(figure)
         distance = figure.signed_distance(points)
         on_it, log_likelihood = _along_smooth(distance, spread)
     else:
-        shape = polygon = figure.polygon()
-        lengths, k = polygon.sides, len(polygon.sides)
-        fitted = OF_SQUARE if square else np.tile(OF_SIDE * k, k)  # a side has a kth of the points
+        corners, after = figure.ends()
+        lengths, k = np.hypot(*(after - corners)[0].T), corners.shape[1]
+        places = _between(corners[0], after[0])
+        fitted = OF_SQUARE if square else OF_FREE_SIDES[k]
         distance = figure.distances(points)[0].max(axis=1)
         share, _, each = shares(points, figure, spread)
         on_it, log_likelihood = float(share.sum()), float(each[0])
-    seen = seen_shares(shape, points[np.abs(distance) <= SIGMAS * spread])
+    seen = _shares_near(places, points[np.abs(distance) <= SIGMAS * spread], GAP)
     length = float(lengths @ np.array(seen))
     cost = _cost(log_likelihood, fitted, len(points), spread) + _length_cost(on_it, length)
     cost += UNSEEN_COST * float(lengths.sum() - length)
@@ -164,17 +167,29 @@ def seen_shares(shape: Shape, points: Floats, gap: float = GAP) -> tuple[float, 
     >>> [round(share, 1) for share in seen_shares(square, np.array([(0.0, 0.05), (0.05, 0.0)]))]
     [0.2, 0.0, 0.0, 0.2]
     """
+    return _shares_near(_places(shape), points, gap)
+
+
+def _places(shape: Shape) -> Floats:
+    """Return where a shape is looked at: places on each of its sides, shape (K, M, 2); a circle has one side."""
+    if isinstance(shape, Circle):
+        return shape.outline(4 * STEPS_PER_SIDE)[None]
+    return _between(shape.vertices, shape.vertices + shape.edges)
+
+
+def _between(begin: Floats, end: Floats) -> Floats:
+    """Return places along K sides, shape (K, 2) each for their ends -> (K, STEPS_PER_SIDE, 2)."""
+    return begin[:, None] + STEPS * (end - begin)[:, None]
+
+
+def _shares_near(places: Floats, points: Floats, gap: float) -> tuple[float, ...]:
+    """Return of each row of places, shape (K, M, 2), the share that lies within ``gap`` metres of a point."""
     from scipy.spatial import cKDTree
 
-    if isinstance(shape, Circle):
-        stretches = [shape.outline(4 * STEPS_PER_SIDE)]
-    else:
-        steps = (np.arange(STEPS_PER_SIDE) + 0.5)[:, None] / STEPS_PER_SIDE
-        stretches = [corner + steps * edge for corner, edge in zip(shape.vertices, shape.edges, strict=True)]
     if len(points) == 0:
-        return (0.0,) * len(stretches)
-    nearest, _ = cKDTree(points).query(np.vstack(stretches))
-    return tuple((nearest.reshape(len(stretches), -1) <= gap).mean(axis=1).tolist())
+        return (0.0,) * len(places)
+    nearest, _ = cKDTree(points).query(places)
+    return tuple((np.count_nonzero(nearest <= gap, axis=1) / places.shape[1]).tolist())
 
 
 def _along_smooth(distance: Floats, spread: float) -> tuple[float, float]:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arguments import as_rng
-from .circles import find_circle, fit_circle
+from .circles import find_circle, nearer_circle
 from .evidence import GAP, Candidate, judged, judged_wall
 from .guess import guess_outlines, guess_rectangles, line_guesses, one_side_more, ransac_lines
 from .lines import Line
@@ -34,7 +34,7 @@ LEAST_POINTS = 8  # fewer fix nothing: a pentagon alone has ten numbers
 MOST_RADIUS = 0.25  # m: a larger circle than a quarter of the board is a wall
 LEAST_ARC = np.radians(60)  # a shorter arc fits a wide range of circles
 CIRCLE_TRIALS = 100  # with four fifths of the points on the circle, one sample in two is clean
-CIRCLE_ROUNDS = 4  # after two, hardly a point changes its weight
+CIRCLE_ROUNDS = 10  # after three or four, hardly a point changes its weight
 SETTLED = 1e-7  # m: what moves by less has settled; the next round moves it by a small part of that
 ENOUGH_POINTS = 200  # more do not make a first fit much better, and cost time
 STARTS_KEPT = 5  # of the guesses, those closest to the points are refined
@@ -194,7 +194,7 @@ def _polished_circle(points: Floats, circle: Circle, spread: float) -> Circle | 
     for _ in range(CIRCLE_ROUNDS):
         across, told = scatter(circle.signed_distance(points), spread)
         density = (1 - GHOSTS) * across / OUTLINE_LENGTH
-        fitted = fit_circle(points, weights=told * density / (density + NOWHERE))
+        fitted = nearer_circle(circle, points, told * density / (density + NOWHERE))
         if fitted is None or fitted.radius > MOST_RADIUS:
             return None
         change = max(abs(fitted.radius - circle.radius), *np.abs(fitted.center - circle.center).tolist())

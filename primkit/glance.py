@@ -30,9 +30,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .circles import fit_circle
-from .evidence import CROOKED_COST, OF_CIRCLE, OF_SIDE, OF_SQUARE, Candidate, judged, price
+from .evidence import CROOKED_COST, OF_CIRCLE, OF_FREE_SIDES, OF_SQUARE, Candidate, judged, price
 from .explain import BLURRED, CONTENDER, moved, polished, refined
-from .guess import QUARTERS, one_side_more
+from .guess import one_side_more
 from .outlines import Outlines, joined
 from .pieces import Cut, best_cuts
 from .refine import refine_hard
@@ -50,12 +50,15 @@ STRAY = 20.0  # cost of a point that comes from nowhere, and not from the outlin
 # Pieces that are free to be anywhere come closer than sides that meet in corners: a simple shape is fitted first even
 # if its bound is so many times the least.
 ROUGHLY = 2.0
+FAR = 10.0  # no circle needs to be fitted if its bound is even so many times the least
 OWN_POINTS = 8  # of each side: a side with fewer could as well be a few strays
 CERTAIN = 10.0  # by so much a shape must be ahead: very strong evidence (Kass and Raftery, 1995)
 # A triangle fills at most half of a rectangle. So their outlines part by 0.27 of the triangle's incircle's radius (root
 # mean square, the least over all triangles and rectangles; found numerically); half of that allows for uneven points.
 APART = 0.135
-MOST_INCIRCLE = 0.1  # m: no triangle on a board has a larger one
+# Five straight pieces miss a circle by 0.059 of its radius (chords over a fifth of it each); half of that, likewise.
+BENT = 0.03
+ASTRAY = 10.0  # spreads; a triangle that misses the points by more in the mean does not explain them, few strays or not
 
 
 def at_a_glance(points: Floats, spread: float, *, soft: bool = True) -> Candidate | None:
@@ -91,11 +94,37 @@ def at_a_glance(points: Floats, spread: float, *, soft: bool = True) -> Candidat
     return moved(best, middle)
 
 
+def at_another_glance(points: Floats, before: Candidate, spread: float, *, soft: bool = True) -> Candidate | None:
+    """Return what was told at a glance, fitted anew to a few points more; None where it should be looked at anew.
+
+    What was beyond doubt stays so while nearly all points lie on it.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        Metres: those that ``at_a_glance`` saw, and a few more.
+    before : Candidate
+        What it returned for them.
+    spread, soft
+        As for ``at_a_glance``.
+    """
+    middle = points.mean(axis=0)
+    local, figure = points - middle, moved(before, -middle).figure
+    best = None if figure is None else polished(local, figure, spread, soft=soft, square=before.square)
+    if best is None or best.figure is None or min(best.seen) < ALL_AROUND:
+        return None
+    on_it = np.abs(_distances(local, best.figure, spread)[0]) <= SIGMAS * spread
+    return moved(best, middle) if on_it.mean() >= NEARLY_ALL else None
+
+
 @dataclass(frozen=True, eq=False)
 class _Way:
-    """One way to explain the points: a first guess, its fitted numbers, and the least that it can cost."""
+    """One way to explain the points: a first guess, its fitted numbers, and the least that it can cost.
 
-    guess: Circle | Outlines
+    The guess is None for a circle that was not fitted, because straight pieces come too close for that.
+    """
+
+    guess: Circle | Cut | None
     square: bool
     fitted: Floats
     least: float
@@ -117,11 +146,13 @@ def _first_fit(points: Floats, spread: float) -> _Fit | None:
     """
     kept = points
     for _ in range(LOOKS):
-        circle, cuts = fit_circle(kept, "taubin"), best_cuts(kept)
-        if circle is None or len(cuts) < 3:
+        cuts = best_cuts(kept)
+        if len(cuts) < 3:
             return None
-        ways = _ways(kept, circle, cuts, spread)
+        ways = _ways(kept, cuts, spread)
         first, figure = _simplest(kept, ways, spread)
+        if figure is None:
+            return None
         distance, own = _distances(kept, figure, spread)
         on_it = np.abs(distance) <= SIGMAS * spread
         if on_it.mean() >= NEARLY_ALL:
@@ -139,21 +170,29 @@ def _first_fit(points: Floats, spread: float) -> _Fit | None:
     return None if simpler or own < OWN_POINTS else _Fit(first, figure, rivals)
 
 
-def _ways(points: Floats, circle: Circle, cuts: dict[int, Cut], spread: float) -> list[_Way]:
+def _ways(points: Floats, cuts: dict[int, Cut], spread: float) -> list[_Way]:
     """Return all ways to explain the points, the simplest first, each with the least that it can cost."""
     n = len(points)
-    upright = Outlines(cuts[4].outline.angles[:, :1] + QUARTERS, cuts[4].outline.offsets)
-    upright_squares = max(cuts[4].squares, n * _apart(cuts[3], n) ** 2)
-    free = {k: np.tile(OF_SIDE * k, k) for k in cuts}
-    round_squares = float((circle.signed_distance(points) ** 2).sum())
-    least = {k: _cost(cuts[k].squares, free[k], n, spread) for k in cuts}
-    return [
-        _Way(circle, False, OF_CIRCLE, _cost(round_squares, OF_CIRCLE, n, spread)),
-        _Way(upright, True, OF_SQUARE, _cost(upright_squares, OF_SQUARE, n, spread)),
-        _Way(cuts[3].outline, False, free[3], least[3]),
-        _Way(cuts[4].outline, False, free[4], least[4] + CROOKED_COST),
-        _Way(cuts[5].outline, False, free[5], least[5]),
+    upright_squares = max(cuts[4].squares, n * _apart(cuts[3], n, spread) ** 2)
+    least = {k: _cost(cuts[k].squares, OF_FREE_SIDES[k], n, spread) for k in cuts}
+    straight = [
+        _Way(cuts[4], True, OF_SQUARE, _cost(upright_squares, OF_SQUARE, n, spread)),
+        _Way(cuts[3], False, OF_FREE_SIDES[3], least[3]),
+        _Way(cuts[4], False, OF_FREE_SIDES[4], least[4] + CROOKED_COST),
+        _Way(cuts[5], False, OF_FREE_SIDES[5], least[5]),
     ]
+    return [_round(points, cuts[5], min(way.least for way in straight), spread), *straight]
+
+
+def _round(points: Floats, five: Cut, least: float, spread: float) -> _Way:
+    """Return the circle's way, fitted where the best five pieces and the least cost of straight ways leave it room."""
+    n, circle = len(points), None
+    radius = float(np.sqrt((points**2).sum() / n))
+    squares = n * max(0.0, BENT * radius - float(np.sqrt(five.squares / n))) ** 2
+    if _cost(squares, OF_CIRCLE, n, spread) <= FAR * least:
+        circle = fit_circle(points, "taubin")
+        squares = np.inf if circle is None else float((circle.signed_distance(points) ** 2).sum())
+    return _Way(circle, False, OF_CIRCLE, _cost(squares, OF_CIRCLE, n, spread))
 
 
 def _cost(squares: float, fitted: Floats, n_points: int, spread: float) -> float:
@@ -161,30 +200,36 @@ def _cost(squares: float, fitted: Floats, n_points: int, spread: float) -> float
     return squares / spread**2 + price(fitted, n_points, spread)
 
 
-def _apart(triangle: Cut, n_points: int) -> float:
-    """Return by how much any rectangle must miss points on this triangle, as a root mean square, metres."""
+def _apart(triangle: Cut, n_points: int, spread: float) -> float:
+    """Return by how much any rectangle must miss points on this triangle, as a root mean square, metres.
+
+    That is asked only where the triangle explains the points: else others are nearer than it is.
+    """
     missed = float(np.sqrt(triangle.squares / n_points))
-    if missed > APART * MOST_INCIRCLE or not triangle.outline.sound()[0]:
+    if missed > ASTRAY * spread or not triangle.outline.sound()[0]:
         return 0.0
-    polygon = triangle.outline.polygon()
-    incircle = 2 * polygon.area / polygon.perimeter
+    outline = triangle.outline
+    begin, end = outline.spans()
+    incircle = float(np.average(outline.offsets, weights=end - begin))  # twice the area over the perimeter
     return max(0.0, APART * incircle - missed)
 
 
 def _fitted(points: Floats, way: _Way, spread: float) -> Circle | Outlines | None:
-    """Return the figure with the least squares near a way's guess; None where there is none."""
-    if isinstance(way.guess, Circle):
-        return way.guess  # Taubin's is as good as that
-    figure = refine_hard(points, way.guess, SIGMAS * spread, square=way.square)
+    """Return a way's figure, near enough for a last polish; None where there is none."""
+    if not isinstance(way.guess, Cut):
+        return way.guess  # Taubin's circle is as good as that
+    figure = way.guess.outline  # the best line of each piece
+    if way.square or not figure.sound()[0]:
+        figure = refine_hard(points, way.guess.upright if way.square else figure, SIGMAS * spread, square=way.square)
     return figure if figure.sound()[0] else None
 
 
-def _simplest(points: Floats, ways: list[_Way], spread: float) -> tuple[_Way, Circle | Outlines]:
-    """Return the simplest way whose bound is small, and its figure; a circle, the first of all ways, is always one."""
+def _simplest(points: Floats, ways: list[_Way], spread: float) -> tuple[_Way, Circle | Outlines | None]:
+    """Return the simplest way whose bound is small and that can be fitted, and its figure; None where there is none."""
     least = min(way.least for way in ways)
     first = next(way for way in ways if way.least <= ROUGHLY * least)
     figure = _fitted(points, first, spread)
-    if figure is not None:
+    if figure is not None or len(ways) == 1:
         return first, figure
     return _simplest(points, [way for way in ways if way is not first], spread)
 
@@ -204,9 +249,9 @@ def _comes_near(points: Floats, rival: _Way, best: Candidate, spread: float, sof
 
     Pieces need not bend, so that their bound says little about a side too many. ``explain`` fits it in the same way.
     """
-    guess = rival.guess
-    assert isinstance(guess, Outlines)
+    assert isinstance(rival.guess, Cut)
     assert isinstance(best.figure, Outlines)
+    guess = rival.guess.outline
     if guess.angles.shape[1] == best.figure.angles.shape[1] + 1:
         guess = joined(guess, one_side_more(points, best.figure))
     figure = refined(points, guess, spread, square=False)

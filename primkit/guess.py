@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .lines import Line, find_lines
-from .outlines import Outlines, from_angle_order, joined
+from .outlines import QUARTERS, Outlines, from_angle_order, joined
 from .refine import refit
 
 Floats = NDArray[np.float64]
@@ -31,7 +31,6 @@ LINE_TRIALS = 200  # a side with an eighth of the points is drawn with 95 % cert
 CLOSING_LINES = 3  # seldom are more than two sides hidden
 CLOSING_LENGTH = 0.012  # m: a shorter stretch of the hull is the usual distance between points
 SUBSETS_KEPT = 4  # the right set is among the first where RANSAC found all sides
-QUARTERS = np.arange(4) * (np.pi / 2)
 # The frame is drawn in by a twentieth of the points, to lie in the sides and not around them; and once not at all, for
 # sides that were not seen: they lie where the seen ones end.
 FRAME_QUANTILES = np.array([0.05, 0.0])

@@ -86,16 +86,22 @@ def _with_neighbours(count: NDArray[Any], pairs: NDArray[np.intp]) -> NDArray[An
     return count + np.bincount(a, count[b], len(count)) + np.bincount(b, count[a], len(count))
 
 
-def _components(n: int, pairs: NDArray[np.intp]) -> NDArray[np.int32]:
-    """Return which of n things hang together by pairs, shape (2, P): a number for each, shape (n,)."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
+def _components(n: int, pairs: NDArray[np.intp]) -> Labels:
+    """Return which of n things hang together by pairs, shape (2, P): a number for each, shape (n,).
 
-    graph = coo_array((np.ones(pairs.shape[1], dtype=bool), tuple(pairs)), shape=(n, n))
-    return connected_components(graph, directed=False)[1]
+    Each has the number of one that it hangs together with, its own at first. The smaller number of a pair goes to the
+    one whose number the other has, and so to all that have it. Numbers only fall, until no pair is left in two minds.
+    """
+    number = np.arange(n)
+    a, b = pairs
+    while (number[a] != number[b]).any():
+        smaller = np.minimum(number[a], number[b])
+        np.minimum.at(number, np.concatenate([number[a], number[b]]), np.concatenate([smaller, smaller]))
+        number = number[number][number]  # twice: long rows get through in few rounds
+    return number
 
 
-def _in_order(groups: NDArray[np.int32]) -> Labels:
+def _in_order(groups: Labels) -> Labels:
     """Return groups numbered 0, 1, 2, ... in the order in which they begin."""
     _, begins, which = np.unique(groups, return_index=True, return_inverse=True)
     return np.argsort(np.argsort(begins))[which]

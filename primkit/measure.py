@@ -13,23 +13,28 @@ Out: ``Detection``: the shape, its points, how closely they lie to it, and how c
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arguments import as_points, as_positive
-from .certainty import certainty
+from .certainty import Certainty, certainty
 from .circles import straightened
 from .evidence import Candidate, seen_shares
 from .explain import candidates
 from .scatter import LEAST_SPREAD, SIGMAS, noise_of
 from .shapes import Circle, Kind, Shape
 
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
+
 Floats = NDArray[np.float64]
 
 NEIGHBOURS = 10  # enough for a line with its spread, few enough for a curve to be straight
+ENOUGH_PLACES = 250  # they tell whether there is any noise
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +71,21 @@ class Choice:
         return np.full(len(self.points), np.inf) if shape is None else shape.signed_distance(self.points)
 
     @cached_property
+    def on_it(self) -> NDArray[np.bool_]:
+        """Which points lie on the chosen shape, shape (N,)."""
+        return np.abs(self.distance) <= SIGMAS * self.spread
+
+    @cached_property
+    def sure(self) -> Certainty:
+        """How sure the numbers of the chosen shape are; nothing without a shape."""
+        best = self.ranked[0] if self.ranked else None
+        if best is None or best.figure is None:
+            return Certainty((), ())
+        points = self.points[self.on_it]
+        middle = points.mean(axis=0)
+        return certainty(best.figure.moved(-middle), points - middle, self.spread, square=best.square)
+
+    @cached_property
     def margin(self) -> float:
         """How much more the best of another kind costs; rivals that were not fitted are fitted when this is asked."""
         best, rivals = self.ranked[0], self.ranked[1:]
@@ -92,12 +112,8 @@ class Detection:
         other grouping came into question; NaN from ``PAPER``, which does not ask.
     seen : tuple of float
         The share of each side (or of the whole circle) that has points near it, 0 to 1.
-    center_std : tuple of float
-        Standard deviations of the centroid's x and y, metres; infinite when a side was never seen. Like the
-        next, it supposes points on cells of 1 mm; empty from ``PAPER``, which does not ask.
-    dimension_std : tuple of float
-        Standard deviation of each of ``shape.dimensions``, metres; infinite for one that was not measured,
-        because a side that it hangs on was never seen, or that is not even known to a centimetre.
+    sure : Certainty or Choice, optional
+        What tells how sure the shape's numbers are; None from ``PAPER``, which does not ask.
     choice : Choice, optional
         How the shape was chosen; None from ``PAPER``.
     """
@@ -107,9 +123,32 @@ class Detection:
     rms: float
     count_margin: float = float("nan")
     seen: tuple[float, ...] = ()
-    center_std: tuple[float, ...] = ()
-    dimension_std: tuple[float, ...] = ()
+    sure: Certainty | Choice | None = field(default=None, repr=False)
     choice: Choice | None = field(default=None, repr=False)
+
+    @property
+    def center_std(self) -> tuple[float, ...]:
+        """Standard deviations of the centroid's x and y, metres; infinite when a side was never seen.
+
+        Like the next, it supposes points on cells of 1 mm, is worked out when it is asked for, and is empty from
+        ``PAPER``, which does not ask.
+        """
+        return self._certainty.center_std
+
+    @property
+    def dimension_std(self) -> tuple[float, ...]:
+        """Standard deviation of each of ``shape.dimensions``, metres.
+
+        Infinite for one that was not measured, because a side that it hangs on was never seen, or that is not even
+        known to a centimetre.
+        """
+        return self._certainty.dimension_std
+
+    @property
+    def _certainty(self) -> Certainty:
+        """How sure the numbers are; nothing where that is not asked."""
+        sure = self.sure.sure if isinstance(self.sure, Choice) else self.sure
+        return Certainty((), ()) if sure is None else sure
 
     @property
     def margin(self) -> float:
@@ -169,24 +208,22 @@ def measure_shape(
 
 def as_detection(choice: Choice) -> Detection | None:
     """Return the best candidate with those of the points that lie on it; None when it is no shape."""
-    points, spread = choice.points, choice.spread
     best = choice.ranked[0] if choice.ranked else None
-    if best is None or best.figure is None or best.shape is None:  # the last only for the type checker's sake
+    shape = None if best is None else best.shape
+    if best is None or shape is None:
         return None
-    found = _with_points_near(best.shape, points, choice.distance, SIGMAS * spread)
-    middle = found.points.mean(axis=0)
-    sure = certainty(best.figure.moved(-middle), found.points - middle, spread, square=best.square)
-    shape = best.shape
+    points, rms = choice.points[choice.on_it], _rms(choice.distance[choice.on_it])
     if isinstance(shape, Circle):
-        shape = straightened(shape, found.points, noise_of(spread), found.seen[0])
-    return replace(found, shape=shape, center_std=sure.center_std, dimension_std=sure.dimension_std, choice=choice)
+        shape = straightened(shape, points, noise_of(choice.spread), best.seen[0])
+    return Detection(shape, points, rms, seen=best.seen, sure=choice, choice=choice)
 
 
 def spread_of(points: ArrayLike) -> float:
     """Return the standard deviation of points from the outlines that they lie on, before any is known, metres.
 
     Each point's neighbours lie on a piece of outline that is nearly straight: what they scatter across it is
-    the spread, and the median over all points does not mind corners and strays.
+    the spread, and the median over all points does not mind corners and strays. Where a look at some hundred places
+    tells that there is no noise, that is enough.
 
     Notes
     -----
@@ -202,7 +239,14 @@ def spread_of(points: ArrayLike) -> float:
     points = as_points(points)
     if len(points) < NEIGHBOURS:
         return LEAST_SPREAD
-    near = cKDTree(points).query(points, NEIGHBOURS)[1]  # (N, NEIGHBOURS)
+    tree, every = cKDTree(points), -(-len(points) // ENOUGH_PLACES)
+    at_some_places = _spread_at(points[::every], points, tree)
+    return at_some_places if every == 1 or at_some_places == LEAST_SPREAD else _spread_at(points, points, tree)
+
+
+def _spread_at(places: Floats, points: Floats, tree: cKDTree) -> float:
+    """Return the spread, judged by what the points next to some places scatter, shape (M, 2); a tree has them all."""
+    near = tree.query(places, NEIGHBOURS)[1]  # (M, NEIGHBOURS)
     x, y = points[:, 0][near], points[:, 1][near]
     x, y = x - x.mean(axis=1, keepdims=True), y - y.mean(axis=1, keepdims=True)
     xx, yy, xy = (x * x).sum(axis=1), (y * y).sum(axis=1), (x * y).sum(axis=1)
@@ -213,11 +257,11 @@ def spread_of(points: ArrayLike) -> float:
 
 def detection(shape: Shape, points: Floats, reach: float) -> Detection:
     """Return the shape with those of the points that lie within ``reach`` metres of its outline."""
-    return _with_points_near(shape, points, shape.signed_distance(points), reach)
-
-
-def _with_points_near(shape: Shape, points: Floats, distance: Floats, reach: float) -> Detection:
-    """Return the shape with those of the points whose distance from it is within ``reach``."""
+    distance = shape.signed_distance(points)
     on_it = np.abs(distance) <= reach
-    rms = float(np.sqrt(np.mean(distance[on_it] ** 2))) if on_it.any() else float("nan")
-    return Detection(shape, points[on_it], rms, seen=seen_shares(shape, points[on_it]))
+    return Detection(shape, points[on_it], _rms(distance[on_it]), seen=seen_shares(shape, points[on_it]))
+
+
+def _rms(distance: Floats) -> float:
+    """Return the root mean square; NaN of nothing."""
+    return float(np.sqrt(np.mean(distance**2))) if len(distance) else float("nan")

@@ -21,6 +21,7 @@ to the side from which it lies farthest out.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +33,7 @@ Floats = NDArray[np.float64]
 # What a board can hold, and a sensor can tell: sides of at least 1.5 cm, corners that bend by 15 to 160 degrees.
 LEAST_SIDE = 0.015
 LEAST_TURN, MOST_TURN = np.radians(15), np.radians(160)
+QUARTERS = np.arange(4) * (np.pi / 2)  # the bearings of a rectangle's normals, from its first
 # Lines that bend by less than this (as a sine) meet far beyond any board; this keeps the corner finite.
 PARALLEL = 1e-12
 
@@ -54,36 +56,47 @@ class Outlines:
     def __len__(self) -> int:
         return len(self.angles)
 
+    @cached_property
+    def _normals(self) -> Floats:
+        """The outward normals, shape (C, 2, K)."""
+        return np.stack([np.cos(self.angles), np.sin(self.angles)], axis=1)
+
+    @cached_property
+    def _spans(self) -> tuple[Floats, Floats]:
+        """What ``spans`` returns: it is asked for often."""
+        (first, last), cos, sin = self.ends(), self._normals[:, 0], self._normals[:, 1]
+        return first[..., 1] * cos - first[..., 0] * sin, last[..., 1] * cos - last[..., 0] * sin
+
     def __getitem__(self, which: NDArray[np.integer] | NDArray[np.bool_] | slice) -> Outlines:
         return Outlines(self.angles[which], self.offsets[which])
 
     def distances(self, points: Floats) -> Floats:
         """Return r, the signed distance of each point from each side's line, shape (C, N, K), metres."""
-        normals = np.stack([np.cos(self.angles), np.sin(self.angles)], axis=1)  # (C, 2, K)
-        return points @ normals - self.offsets[:, None, :]
+        return points @ self._normals - self.offsets[:, None, :]
 
     def along(self, points: Floats) -> Floats:
         """Return where each point's foot lies along each side's line, shape (C, N, K), metres."""
-        directions = np.stack([-np.sin(self.angles), np.cos(self.angles)], axis=1)
-        return points @ directions
+        cos, sin = self._normals[:, 0], self._normals[:, 1]
+        return points @ np.stack([-sin, cos], axis=1)
 
     def corners(self) -> Floats:
         """Return the corners, shape (C, K, 2), metres; corner i lies between side i - 1 and side i."""
-        a, d = self.angles, self.offsets
-        before_a, before_d = _before(a), _before(d)
-        bend = np.sin(a - before_a)
+        cos, sin, d = self._normals[:, 0], self._normals[:, 1], self.offsets
+        before_cos, before_sin, before_d = _before(cos), _before(sin), _before(d)
+        bend = sin * before_cos - cos * before_sin
         bend = np.where(np.abs(bend) < PARALLEL, PARALLEL, bend)
-        x = (before_d * np.sin(a) - d * np.sin(before_a)) / bend
-        y = (d * np.cos(before_a) - before_d * np.cos(a)) / bend
+        x = (before_d * sin - d * before_sin) / bend
+        y = (d * before_cos - before_d * cos) / bend
         return np.stack([x, y], axis=-1)
+
+    def ends(self) -> tuple[Floats, Floats]:
+        """Return the corners in which each side begins and ends, shape (C, K, 2) each, metres."""
+        corners = self.corners()
+        return corners, _after(corners)
 
     def spans(self) -> tuple[Floats, Floats]:
         """Return where each side begins and ends along its line, shape (C, K) each, metres."""
-        corners, a = self.corners(), self.angles
-        after = _after(corners)
-        begin = corners[..., 1] * np.cos(a) - corners[..., 0] * np.sin(a)
-        end = after[..., 1] * np.cos(a) - after[..., 0] * np.sin(a)
-        return begin, end
+        return self._spans
 
     def sound(self) -> NDArray[np.bool_]:
         """Tell which outlines are closed and convex, with sides and corners that a sensor can tell, shape (C,)."""

@@ -19,11 +19,12 @@ Source: Bellman (1961), "On the approximation of curves by line segments using d
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .outlines import Outlines, from_angle_order
+from .outlines import QUARTERS, Outlines, from_angle_order
 
 Floats = NDArray[np.float64]
 
@@ -38,16 +39,30 @@ class Cut:
 
     Parameters
     ----------
-    outline : Outlines (one row)
-        The pieces' lines; not always ``sound``.
+    moments : array, shape (6, K)
+        Sums of 1, x, y, xx, yy and xy over the points of each piece.
     squares : float
         Sum of the squared distances of the points from their piece's line, square metres; points near the cuts are
         supposed to be as close as the others. The pieces need not meet in corners, nor bend: an outline with so many
         sides hardly comes closer to the points.
     """
 
-    outline: Outlines
+    moments: Floats
     squares: float
+
+    @cached_property
+    def outline(self) -> Outlines:
+        """The pieces' best lines, one row, their normals away from the origin; not always ``sound``."""
+        xx, yy, xy = _scatter(self.moments)
+        angles = 0.5 * np.arctan2(2 * xy, xx - yy) + np.pi / 2  # across the direction of most scatter
+        offsets = (np.cos(angles) * self.moments[1] + np.sin(angles) * self.moments[2]) / self.moments[0]
+        return from_angle_order(np.where(offsets < 0, angles + np.pi, angles)[None], np.abs(offsets)[None])
+
+    @property
+    def upright(self) -> Outlines:
+        """Four pieces' lines with right angles, as the first of them lies."""
+        outline = self.outline
+        return Outlines(outline.angles[:, :1] + QUARTERS, outline.offsets)
 
 
 def best_cuts(points: Floats) -> dict[int, Cut]:
@@ -64,8 +79,9 @@ def best_cuts(points: Floats) -> dict[int, Cut]:
     between two knots a cut lies, is left open, and the points there belong to no piece: so none is on a wrong one.
     """
     points = _from_farthest(points)
-    knots = np.linspace(0, len(points), min(KNOTS, len(points)) + 1).astype(int)
-    moments = _moments_between(points, knots)[:, 1:, :-1]  # a piece begins a knot after its cut, or ends a knot before
+    n_knots = min(KNOTS, len(points))
+    knots = np.arange(n_knots + 1) * len(points) // n_knots
+    moments = _moments_between(points, knots)
     squares = np.where(_long_enough(points, knots), _squares(moments), np.inf)
     best, last_cuts, cuts = squares[0], [], {}  # best[j]: the least squares of so many pieces that end at knot j
     for k in range(2, MOST + 1):
@@ -75,7 +91,7 @@ def best_cuts(points: Floats) -> dict[int, Cut]:
         if k >= FEWEST and np.isfinite(best[-1]):
             ends = _traced(last_cuts)
             pieces = moments[:, ends[:-1], ends[1:]]
-            cuts[k] = Cut(_lines(pieces), float(best[-1]) * len(points) / float(pieces[0].sum()))
+            cuts[k] = Cut(pieces, float(best[-1]) * len(points) / float(pieces[0].sum()))
     return cuts
 
 
@@ -83,17 +99,22 @@ def _from_farthest(points: Floats) -> Floats:
     """Return the points in the order of their bearings, beginning where they are farthest; a lone stray is not."""
     points = points[np.argsort(np.arctan2(points[:, 1], points[:, 0]), kind="stable")]
     far = (points**2).sum(axis=1)
-    with_both_neighbours = np.minimum(far, np.minimum(np.roll(far, 1), np.roll(far, -1)))
-    return np.roll(points, -int(with_both_neighbours.argmax()), axis=0)
+    ring = np.concatenate([far[-1:], far, far[:1]])
+    with_both_neighbours = np.minimum(far, np.minimum(ring[:-2], ring[2:]))
+    first = int(with_both_neighbours.argmax())
+    return np.concatenate([points[first:], points[:first]])
 
 
 def _moments_between(points: Floats, knots: NDArray[np.intp]) -> Floats:
-    """Return the sums of 1, x, y, xx, yy and xy over the points from one knot to another, shape (6, M + 1, M + 1)."""
+    """Return the sums of 1, x, y, xx, yy and xy over the points of each piece, shape (6, M, M).
+
+    A piece from one cut to another begins a knot after the first, and ends a knot before the second.
+    """
     x, y = points.T
     sums = np.zeros((6, len(points) + 1))
     np.cumsum([np.ones_like(x), x, y, x * x, y * y, x * y], axis=1, out=sums[:, 1:])
     sums = sums[:, knots]
-    return sums[:, None, :] - sums[:, :, None]
+    return sums[:, None, :-1] - sums[:, 1:, None]
 
 
 def _long_enough(points: Floats, knots: NDArray[np.intp]) -> NDArray[np.bool_]:
@@ -107,13 +128,14 @@ def _scatter(moments: Floats) -> tuple[Floats, Floats, Floats]:
     """Return the scatter sums xx, yy and xy about the mean of each piece."""
     n, x, y, xx, yy, xy = moments
     n = np.maximum(n, 1.0)
-    return xx - x * x / n, yy - y * y / n, xy - x * y / n
+    mean_x, mean_y = x / n, y / n
+    return xx - x * mean_x, yy - y * mean_y, xy - x * mean_y
 
 
 def _squares(moments: Floats) -> Floats:
     """Return the sum of squared distances from the best line of each piece; infinite where there is none."""
     xx, yy, xy = _scatter(moments)
-    across = (xx + yy - np.hypot(xx - yy, 2 * xy)) / 2  # the smaller eigenvalue of the scatter matrix
+    across = (xx + yy - np.sqrt((xx - yy) ** 2 + 4 * xy**2)) / 2  # the smaller eigenvalue of the scatter matrix
     return np.where(moments[0] >= 2, np.maximum(across, 0.0), np.inf)
 
 
@@ -123,11 +145,3 @@ def _traced(last_cuts: list[NDArray[np.intp]]) -> list[int]:
     for cut in reversed(last_cuts):
         ends.append(int(cut[ends[-1]]))
     return [*ends, 0][::-1]
-
-
-def _lines(moments: Floats) -> Outlines:
-    """Return the best lines of pieces as an outline, their normals away from the origin."""
-    xx, yy, xy = _scatter(moments)
-    angles = 0.5 * np.arctan2(2 * xy, xx - yy) + np.pi / 2  # across the direction of most scatter
-    offsets = (np.cos(angles) * moments[1] + np.sin(angles) * moments[2]) / moments[0]
-    return from_angle_order(np.where(offsets < 0, angles + np.pi, angles)[None], np.abs(offsets)[None])

@@ -62,7 +62,7 @@ def refine_hard(points: Floats, guess: Outlines, reach: float, *, square: bool =
     for _ in range(HARD_ROUNDS):
         r = guess.distances(points)
         owner = r.argmax(axis=2)
-        near = np.abs(np.take_along_axis(r, owner[..., None], axis=2)) <= reach
+        near = np.abs(r.max(axis=2, keepdims=True)) <= reach
         given = (owner[..., None] == sides) & near
         if before is not None and np.array_equal(given, before):
             break
@@ -172,11 +172,10 @@ def refit(points: Floats, weights: Floats, outlines: Outlines, *, square: bool =
         Fit one bearing for four sides at right angles.
     """
     x, y = points.T
-    features = np.column_stack([np.ones_like(x), x, y, x * x, y * y, x * y])
-    mass, *moments = np.moveaxis(np.swapaxes(weights, 1, 2) @ features, 2, 0)  # (C, K) each
+    features = np.array([np.ones_like(x), x, y, x * x, y * y, x * y])
+    mass, *moments = np.moveaxis(features @ weights, 1, 0)  # (C, K) each
     enough = mass >= LEAST_SHARE
-    with np.errstate(divide="ignore", invalid="ignore"):  # sides without points are set right below
-        mx, my, mxx, myy, mxy = (m / mass for m in moments)
+    mx, my, mxx, myy, mxy = moments / np.where(enough, mass, 1.0)  # sides without points are set right below
     sxx, syy, sxy = mxx - mx * mx, myy - my * my, mxy - mx * my  # scatter about each side's mean
 
     if square:

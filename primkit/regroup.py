@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 
 from .evidence import Candidate, joint_cost, seen_shares
 from .explain import candidates, explained_again
-from .glance import at_a_glance
+from .glance import at_a_glance, at_another_glance
 from .measure import Choice, Detection, as_detection
 from .scatter import NOWHERE, SIGMAS
 from .segmentation import LEAST_GROUP, kmeans
@@ -114,25 +114,30 @@ def grown(old: Group, points: Floats, spread: float, *, soft: bool = True) -> Gr
         None where all explanations should be looked for: many points are new, others are gone, what the group is was
         in doubt, or it is so now.
     """
-    if not 1 <= len(points) / old.n_thorough <= 1 + FEW_NEW or len(old.ranked) < 2 or _lead(old.ranked) < SURE:
+    in_doubt = not old.choice.at_a_glance and not _sure(old.ranked)
+    if in_doubt or not 1 <= len(points) / old.n_thorough <= 1 + FEW_NEW or not _holds(points, old.points):
         return None
-    if not _holds(points, old.points):
-        return None
-    ranked = explained_again(points, old.ranked, spread, soft=soft)
-    if len(ranked) < 2 or ranked[0].kind != old.ranked[0].kind or _lead(ranked) < SURE:
+    if old.choice.at_a_glance:
+        best = at_another_glance(points, old.ranked[0], spread, soft=soft)
+        ranked = [] if best is None else [best]
+    else:
+        ranked = explained_again(points, old.ranked, spread, soft=soft)
+    if not ranked or ranked[0].kind != old.ranked[0].kind or not (old.choice.at_a_glance or _sure(ranked)):
         return None
     return Group(points, ranked, spread, old.n_thorough, replace(old.choice, points=points, ranked=ranked))
 
 
-def _lead(ranked: list[Candidate]) -> float:
-    """Return by how much the best explanation is ahead of the best one of another kind."""
-    return next((c.cost for c in ranked if c.kind != ranked[0].kind), float("inf")) - ranked[0].cost
+def _sure(ranked: list[Candidate]) -> bool:
+    """Tell whether the best explanation is far ahead of the best one of another kind."""
+    if len(ranked) < 2:
+        return False
+    return next((c.cost for c in ranked if c.kind != ranked[0].kind), float("inf")) - ranked[0].cost >= SURE
 
 
 def _holds(points: Floats, fewer: Floats) -> bool:
     """Tell whether all of the fewer points are among the points; in both no point stands twice."""
-    both = np.vstack([points, fewer])
-    return len(np.unique(both, axis=0)) == len(points)
+    one, other = (np.ascontiguousarray(p).view(complex) for p in (fewer, points))  # a point as one number: 5 x faster
+    return bool(np.isin(one, other).all())
 
 
 def regrouped(
@@ -216,7 +221,9 @@ def _halves(group: Group, spread: float, n_shapes: int | None, explain: Explain)
 
 
 def _share_on_shape(group: Group, spread: float) -> float:
-    """Return the share of a group's points that lie on its best shape; none without a shape."""
+    """Return the share of a group's points that lie on its best shape, or on its wall: no wall is two of anything."""
+    if group.shape is None:
+        return group.ranked[0].n_on / len(group.points)
     return float(np.mean(np.abs(group.choice.distance) <= SIGMAS * spread))
 
 

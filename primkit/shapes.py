@@ -192,7 +192,7 @@ class Polygon:
     @property
     def edges(self) -> NDArray[np.float64]:
         """Vectors along the sides, from each corner to the next, shape (K, 2), metres."""
-        return np.roll(self.vertices, -1, axis=0) - self.vertices
+        return _next(self.vertices) - self.vertices
 
     @property
     def sides(self) -> NDArray[np.float64]:
@@ -209,7 +209,7 @@ class Polygon:
     def area(self) -> float:
         """Area in square metres (shoelace formula)."""
         x, y = (self.vertices - self.vertices[0]).T  # near the origin: no digits lost far from it
-        return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+        return float(0.5 * np.sum(x * _next(y) - _next(x) * y))
 
     @property
     def perimeter(self) -> float:
@@ -220,8 +220,8 @@ class Polygon:
     def centroid(self) -> NDArray[np.float64]:
         """Centre of area, shape (2,), metres: the mean over the surface, not over the corners."""
         x, y = (self.vertices - self.vertices[0]).T
-        weight = x * np.roll(y, -1) - np.roll(x, -1) * y
-        moment = [np.sum((v + np.roll(v, -1)) * weight) for v in (x, y)]
+        weight = x * _next(y) - _next(x) * y
+        moment = [np.sum((v + _next(v)) * weight) for v in (x, y)]
         return self.vertices[0] + np.array(moment) / (3 * weight.sum())
 
     @property
@@ -250,11 +250,11 @@ class Polygon:
 
     def signed_distance(self, points: ArrayLike) -> NDArray[np.float64]:
         """Return each point's distance to the outline, shape (N,), metres; negative inside."""
-        offset = as_points(points)[:, None, :] - self.vertices  # (N, K, 2) from each corner
-        edges = self.edges
-        along = np.clip((offset * edges).sum(-1) / (edges**2).sum(-1), 0.0, 1.0)
-        distance = np.linalg.norm(offset - along[..., None] * edges, axis=-1).min(axis=1)
-        inside = ((offset * self.normals).sum(-1) < 0).all(axis=1)
+        x, y = as_points(points).T[:, None] - self.vertices.T[..., None]  # from each corner, (K, N) each
+        dx, dy = self.edges.T[..., None]
+        along = np.clip((x * dx + y * dy) / (dx**2 + dy**2), 0.0, 1.0)
+        distance = np.hypot(x - along * dx, y - along * dy).min(axis=0)
+        inside = (x * dy < y * dx).all(axis=0)  # to the left of every side
         return np.where(inside, -distance, distance)
 
     def moved(self, offset: ArrayLike = (0.0, 0.0), angle: float = 0.0) -> Polygon:
@@ -286,6 +286,11 @@ class Polygon:
 Shape = Circle | Polygon
 
 
+def _next(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return for each corner what belongs to the next one; several times faster than np.roll."""
+    return np.concatenate([corners[1:], corners[:1]])
+
+
 def _without_repeats(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """Drop each corner that repeats the one before it, and the last one if it repeats the first (a closed ring)."""
     if len(corners) == 0:
@@ -298,8 +303,8 @@ def _without_repeats(corners: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _counter_clockwise(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return convex corners counter-clockwise, or refuse what is not convex."""
-    edges = np.roll(corners, -1, axis=0) - corners
-    before = np.roll(edges, 1, axis=0)
+    edges = _next(corners) - corners
+    before = np.concatenate([edges[-1:], edges[:-1]])
     cross = before[:, 0] * edges[:, 1] - before[:, 1] * edges[:, 0]
     turn = np.arctan2(cross, (before * edges).sum(axis=1))  # how far the outline bends at each corner
     straight = np.abs(np.abs(turn) - np.pi / 2) > np.pi / 2 - STRAIGHT

@@ -132,9 +132,7 @@ class Steps:
         if shape is None:
             return None
         anew = detection(shape, found.points, reach)
-        return replace(
-            found, shape=shape, points=anew.points, rms=anew.rms, seen=anew.seen, center_std=(), dimension_std=()
-        )
+        return replace(found, shape=shape, points=anew.points, rms=anew.rms, seen=anew.seen, sure=None)
 
     def _polygon(self, polygon: Polygon, points: Floats) -> Polygon | None:
         """Fit a line to the points of each side; neighbouring lines meet in the corners."""

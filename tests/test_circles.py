@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.optimize import least_squares
 
 import primkit as pk
-from primkit.circles import CIRCLE, find_circle, fit_circle, straightened
+from primkit.circles import CIRCLE, find_circle, fit_circle, nearer_circle, straightened
 from primkit.evidence import seen_shares
 from primkit.ransac import draw_samples
 from primkit.shapes import Circle
@@ -516,3 +516,20 @@ def test_the_correction_turns_with_the_arc_and_moves_the_centre_away_from_the_ro
     assert np.hypot(*here.center) > here.radius - 0.05
     wild = straightened(pk.Circle((0, 0), 0.05), half, 0.5, 0.01)
     assert wild.radius == pytest.approx(0.055)
+
+
+@given(seed=st.integers(0, 10_000))
+def test_step_after_step_a_circle_comes_to_the_least_squares(seed):
+    rng = np.random.default_rng(seed)
+    points = Circle((0.2, -0.1), 0.05).outline(80)[: rng.integers(35, 80)] + rng.normal(0, 0.001, 2)
+    points, weights = points + rng.normal(0, 0.0005, points.shape), rng.uniform(0.1, 1, len(points))
+    circle = Circle((0.205, -0.102), 0.053)
+    for _ in range(8):
+        circle = nearer_circle(circle, points, weights)
+    best = fit_circle(points, weights=weights)
+    np.testing.assert_allclose([*circle.center, circle.radius], [*best.center, best.radius], atol=1e-9)
+
+
+def test_no_step_leads_to_a_circle_that_points_do_not_fix():
+    circle = Circle((0, 0), 0.05)
+    assert nearer_circle(circle, np.array([(0.05, 0.0), (0.0, 0.05)]), np.zeros(2)) is None

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 import primkit as pk
-from primkit import explain, glance, measure
+from primkit import explain, glance, measure, regroup
 from primkit.explain import candidates
-from primkit.glance import APART, at_a_glance
+from primkit.glance import APART, BENT, at_a_glance, at_another_glance
 from primkit.pieces import best_cuts
 from primkit.scatter import LEAST_SPREAD, spread_across
 
@@ -196,3 +196,76 @@ def test_more_pieces_come_closer():
     assert cuts[3].squares > 2 * cuts[4].squares > 4 * cuts[5].squares
     rms = np.sqrt(cuts[5].squares / 240)
     assert rms == pytest.approx(0.0588 * 0.05, rel=0.3)  # a chord over a fifth of a circle, away from its ends
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_was_told_at_a_glance_grows_with_a_few_points(kind):
+    """Another glance at more points says what a first glance at all of them says."""
+    told = 0
+    for seed in range(15):
+        rng = np.random.default_rng(seed)
+        points = seen_on_cells(shape_of(seed, kind), 300, 0.001, rng)
+        first = rng.permutation(len(points))[: int(0.95 * len(points))]
+        before, spread = at_a_glance(points[np.sort(first)], spread_across(0.001)), spread_across(0.001)
+        best = None if before is None else at_another_glance(points, before, spread)
+        told += best is not None
+        if best is not None:
+            assert_as_good(best, candidates(points, spread, rng=0)[0])
+    assert told >= 9, told
+
+
+def test_another_glance_leaves_what_has_come_into_doubt():
+    """Points beside the outline, or none along a side that grew, are for a first glance to judge."""
+    ring = pk.Circle((0, 0), 0.05).outline(200)
+    before = at_a_glance(ring, LEAST_SPREAD)
+    beside = pk.Circle((0, 0), 0.044).outline(10)
+    assert at_another_glance(np.vstack([ring, beside[:2]]), before, LEAST_SPREAD) is not None
+    assert at_another_glance(np.vstack([ring, beside]), before, LEAST_SPREAD) is None
+    assert at_another_glance(ring[:150], before, LEAST_SPREAD) is None
+
+
+def test_a_growing_group_is_not_looked_at_anew(monkeypatch):
+    looks = []
+    real = regroup.at_a_glance
+    monkeypatch.setattr(regroup, "at_a_glance", lambda *a, **k: looks.append(1) or real(*a, **k))
+    ring = pk.Circle((0.1, 0.0), 0.06).outline(200)
+    memory = {}
+    for n in (190, 195, 200):
+        (found,) = pk.find_shapes(ring[np.random.default_rng(0).permutation(200)[:n]], memory=memory, rng=0)
+        assert found.kind == "circle"
+    assert looks == [1]
+    assert found.margin > 100  # rivals are fitted to all points, when it is asked for
+
+
+def test_how_sure_numbers_are_is_worked_out_when_it_is_asked_for_and_only_once(monkeypatch):
+    asked = []
+    real = measure.certainty
+    monkeypatch.setattr(measure, "certainty", lambda *a, **k: asked.append(1) or real(*a, **k))
+    (found,) = pk.find_shapes(points_of(pk.World([pk.Circle((0.1, 0.0), 0.06)])), rng=0)
+    assert asked == []
+    std = found.dimension_std
+    assert found.measured == (True,)
+    assert len(found.center_std) == 2
+    assert asked == [1]
+    assert pickle.loads(pickle.dumps(found)).dimension_std == std
+
+
+@given(seed=st.integers(0, 10_000), n=st.integers(60, 400))
+def test_five_straight_pieces_miss_a_circle_by_as_much_as_is_supposed(seed, n):
+    """Also where points lie unevenly: at most so many times denser on one side than on the other."""
+    bearing = np.arange(n) * 2 * np.pi / n
+    bearing += 0.4 * np.sin(bearing + seed)
+    points = 0.05 * np.column_stack([np.cos(bearing), np.sin(bearing)])
+    points -= points.mean(axis=0)
+    radius = np.sqrt((points**2).sum() / n)
+    assert np.sqrt(best_cuts(points)[5].squares / n) > 1.3 * BENT * radius
+
+
+@pytest.mark.parametrize("kind", KINDS[1:])
+def test_no_circle_is_fitted_where_straight_pieces_come_too_close_for_one(monkeypatch, kind):
+    fitted = []
+    real = glance.fit_circle
+    monkeypatch.setattr(glance, "fit_circle", lambda *a: fitted.append(1) or real(*a))
+    for seed in range(20):
+        at_a_glance(seen_on_cells(shape_of(seed, kind), 300, 0.0, np.random.default_rng(seed)), LEAST_SPREAD)
+    assert len(fitted) <= 10

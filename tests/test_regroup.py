@@ -118,3 +118,15 @@ def test_strays_in_a_group_do_not_split_it():
     ring, rng = pk.Circle((0, 0), 0.08).outline(160), np.random.default_rng(0)
     (group,) = regrouped(groups_of(np.vstack([ring, rng.uniform(-0.07, 0.07, (40, 2))])), LEAST_SPREAD)
     assert group.shape.kind == "circle"
+
+
+def test_a_wall_is_not_taken_for_two_things(monkeypatch):
+    """However long it is: nothing is cut that lies on one line."""
+    wall = np.column_stack([np.arange(0, 0.3, 0.002), np.full(150, 0.1)])
+    group = explained(wall, LEAST_SPREAD)
+    assert group.shape is None
+    cut = []
+    real = regroup.kmeans
+    monkeypatch.setattr(regroup, "kmeans", lambda *a, **k: cut.append(1) or real(*a, **k))
+    assert regroup.regrouped([group], LEAST_SPREAD)[0] == [group]
+    assert cut == []

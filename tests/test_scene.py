@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import primkit as pk
+from primkit.certainty import Certainty
 from primkit.changes import MovingGrid
 from primkit.measure import Detection
 from primkit.robot import AXLE, FASTEST, WHEEL, clearance
@@ -756,7 +757,7 @@ def test_an_outline_is_drawn_as_it_was_seen():
     shape = pk.Polygon([(0, 0), (0.2, 0), (0.2, 0.1), (0, 0.1)])
     x, y = np.arange(0, 0.2, 0.001), np.arange(0, 0.1, 0.001)
     points = np.vstack([np.column_stack([x, 0 * x]), np.column_stack([0 * y + 0.2, y])])
-    told = drawn(Detection(shape, points, 0.0, dimension_std=(0.001, float("inf"))))
+    told = drawn(Detection(shape, points, 0.0, sure=Certainty((), (0.001, float("inf")))))
     assert told["name"] == "rectangle, 200 x ? mm"
     for seen, stretch in told["stretches"]:
         inner = np.array(stretch[2:-2]).reshape(-1, 2) / 10_000

@@ -11,6 +11,7 @@ import pytest
 from scipy.stats import binomtest
 
 from primkit.__main__ import main
+from primkit.certainty import Certainty
 from primkit.evaluation import evaluate
 from primkit.grid import Grid
 from primkit.lidar import Lidar, scan
@@ -401,7 +402,7 @@ def test_sides_seen_at_their_ends_only_were_not_seen():
 
 
 def found(shape, *std):
-    return Detection(shape, np.empty((0, 2)), 0.0, dimension_std=std)
+    return Detection(shape, np.empty((0, 2)), 0.0, sure=Certainty((), std))
 
 
 NO, YES = False, True

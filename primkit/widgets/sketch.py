@@ -54,8 +54,9 @@ def drawn(one: Detection) -> Message:
     --------
     Half of a circle was seen; the last stretch closes on the first:
 
+    >>> from primkit.certainty import Certainty
     >>> circle = Circle((0, 0), 0.1)
-    >>> told = drawn(Detection(circle, circle.outline(200)[:101], 0.0, dimension_std=(0.001,)))
+    >>> told = drawn(Detection(circle, circle.outline(200)[:101], 0.0, sure=Certainty((), (0.001,))))
     >>> told["name"], [seen for seen, _ in told["stretches"]]
     ('circle, radius 100 mm', [True, False, True])
     """
