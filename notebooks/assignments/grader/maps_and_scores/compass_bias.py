@@ -1,0 +1,116 @@
+"""A compass that is off: the angle that makes the map sharpest.
+
+In:  the student's ``compass_bias``.
+Out: marks.
+
+>>> COMPASS_BIAS.mark(true_bias)
+4.0
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+import primkit as pk
+
+from ..parts import Fault, shown, task
+
+BIASES: dict[bytes, float] = {}  # the truth about the scans that are made below, by their poses
+
+
+def true_bias(scans: pk.Scans) -> float:
+    """Return the angle by which all headings are too large, radians: not estimated, but known."""
+    return BIASES[scans.poses.tobytes()]
+
+
+def judge_bias(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None:
+    """Judge an angle, within half a degree."""
+    if not isinstance(got, (float, int, np.floating)) or isinstance(got, bool):
+        return f"got {shown(got)}, expected an angle in radians"
+    off = float(np.degrees(got - expected))
+    return (
+        None if abs(off) <= 0.5 else f"got {np.degrees(got):.1f} degrees, expected {np.degrees(expected):.1f} degrees"
+    )
+
+
+def biased(rng: np.random.Generator, bias: float, lidar: pk.Lidar, turn: float) -> pk.Scans:
+    """Return scans of a board from 30 poses, headings within ``turn`` of 0, all of them read too large by a bias."""
+    seed = int(rng.integers(1 << 30))
+    world = pk.random_world(3, style="free", rng=seed)
+    poses = rng.permutation(pk.teleport_poses(world))[:30]
+    poses[:, 2] = rng.uniform(-turn, turn, len(poses))
+    seen = pk.scan(world, poses, lidar, rng=seed)
+    poses = seen.poses + np.array([0.0, 0.0, bias])
+    BIASES[poses.tobytes()] = bias
+    return pk.Scans(poses, seen.angles, seen.ranges, seen.inside)
+
+
+EXACT = pk.Lidar(beams=60, range_max=0.4)
+POOR = pk.Lidar(beams=60, range_max=0.4, noise_std=0.002, dropout=0.2)
+
+
+def some_bias(rng: np.random.Generator) -> float:
+    """Return a bias of 1 to 10 degrees to either side."""
+    return float(rng.choice([-1, 1]) * np.radians(rng.uniform(1, 10)))
+
+
+def exact_scans(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+    """Yield exact scans, headings about the same."""
+    for _ in range(5):
+        yield (biased(rng, some_bias(rng), EXACT, 0.1),)
+
+
+def poor_scans(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+    """Yield scans with noise and dropouts, and any headings."""
+    for _ in range(5):
+        yield (biased(rng, some_bias(rng), POOR, np.pi),)
+
+
+def right_compass(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+    """Yield scans with a right compass, and with one that is off by less than a degree."""
+    for bias in (0.0, 0.8, -0.8):
+        yield (biased(rng, float(np.radians(bias)), EXACT, np.pi),)
+
+
+COMPASS_BIAS = task(
+    "compass_bias",
+    true_bias,
+    judge_bias,
+    (
+        ("exact scans, headings alike", 1, exact_scans),
+        ("noise, dropouts and any headings", 2, poor_scans),
+        ("a compass that is right, or nearly", 1, right_compass),
+    ),
+    (
+        Fault(
+            "The right angle with the wrong sign: it is what the compass adds, and what you take away again.",
+            when=lambda cases: all(judge_bias(-number_of(case.got), case.expected, ()) is None for case in cases),
+            name="sign turned round",
+        ),
+        Fault(
+            "That is in degrees.",
+            when=lambda cases: all(
+                judge_bias(np.radians(number_of(case.got)), case.expected, ()) is None for case in cases
+            ),
+            name="degrees for radians",
+        ),
+        Fault(
+            "Always 0: is the map really sharpest as it is?",
+            when=lambda cases: all(number_of(case.got) == 0 for case in cases),
+            name="no bias",
+        ),
+        Fault(
+            "Near, but not within half a degree: look again around your best angle, in finer steps.",
+            when=lambda cases: all(abs(number_of(case.got) - case.expected) < np.radians(2.5) for case in cases),
+            name="steps too coarse",
+        ),
+    ),
+)
+
+
+def number_of(value: Any) -> float:
+    """Return a number; nan for anything else."""
+    return float(value) if isinstance(value, (float, int, np.floating)) else float("nan")
