@@ -47,6 +47,8 @@ tour, route = pk.explore(world, noisy, rng=10, most_scans=6), pk.scripted_route(
 scene = pk.drive_scene(world, noisy, rng=12).state
 for _ in range(20):
     scene.step((6.0, 5.0))
+scene.finish()  # what the thread beside the drive has found by now is a matter of time
+film = pk.replay(pk.Drive(scans, np.zeros((len(scans.poses), 2))), rng=13).film
 results = {
     "random_world": [world, pk.random_world(5, style="free", rng=3)],
     "scan": scans,
@@ -61,6 +63,7 @@ results = {
     "explore": [tour.poses, tour.scans, tour.found, tour.wheels],
     "scripted_route": [route.start, route.wheels],
     "drive_scene": [scene.grid.points(), scene.found],
+    "replay": [film.cells, *(look.found for look in film.looks)],
     "find_shapes": [pk.find_shapes(points, rng=9), pk.find_shapes(points, 3, settings=few, rng=9)],
 }
 for name, value in results.items():
