@@ -47,12 +47,12 @@ def secrets(tmp_path_factory):
     """Those of a small course: a solution, a helper of the grader's, and a salt."""
     folder = tmp_path_factory.mktemp("course")
     (folder / "source" / "gap").mkdir(parents=True)
-    (folder / "grader").mkdir()
+    (folder / "grader" / "gaps").mkdir(parents=True)
     first, *rest = SOLUTION.splitlines()
     source = "\n".join([first, "    ### BEGIN SOLUTION", *rest, "    ### END SOLUTION"])
     cell = nbformat.v4.new_code_cell(source, metadata={"nbgrader": {"grade_id": "nearest_gap", "solution": True}})
     nbformat.write(nbformat.v4.new_notebook(cells=[cell]), folder / "source" / "gap" / "gap.ipynb")
-    (folder / "grader" / "gaps.py").write_text("import numpy as np\n\n\n" + HELPER)
+    (folder / "grader" / "gaps" / "widest.py").write_text("import numpy as np\n\n\n" + HELPER)
     (folder / "salt.txt").write_text(SALT + "\n")
     return secrets_of(folder)
 
@@ -117,7 +117,7 @@ def test_a_planted_solution_is_found(place, planted, form, secrets, tmp_path):
     path.write_text(json.dumps(notebook), encoding="utf-8")
     (leak,) = find_leaks([tmp_path], secrets)
     assert leak.path == path.as_posix()
-    assert ("nearest_gap in gap.ipynb" if planted is SOLUTION else "mean_of_widest in grader/gaps.py") in leak.what
+    assert ("nearest_gap in gap.ipynb" if planted is SOLUTION else "mean_of_widest in grader/gaps/widest.py") in leak.what
     assert leak.place.startswith(("cell ", "the notebook's metadata"))
 
 
@@ -146,7 +146,7 @@ def test_a_wheel_is_looked_through(secrets, tmp_path):
     }
     assert found == {
         ("/primkit/gaps.py", "the solution of nearest_gap in gap.ipynb"),
-        ("/primkit/data/inner.zip/deep.py", "mean_of_widest in grader/gaps.py"),
+        ("/primkit/data/inner.zip/deep.py", "mean_of_widest in grader/gaps/widest.py"),
     }
 
 

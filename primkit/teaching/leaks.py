@@ -83,7 +83,7 @@ def secrets_of(folder: Path) -> Secrets:
                 secrets.add("source", f"the solution of {name} in {path.name}", part)
     for path in sorted((folder / "grader").rglob("*.py")):
         for name, body in _functions(path.read_text(encoding="utf-8")):
-            secrets.add("grader", f"{name} in grader/{path.name}", body)
+            secrets.add("grader", f"{name} in {path.relative_to(folder).as_posix()}", body)
     secrets.solutions = {where: held - public for where, held in secrets.solutions.items() if held - public}
     if (folder / SALT).is_file():
         secrets.words[(folder / SALT).read_text(encoding="utf-8").strip()] = "the salt"
