@@ -117,7 +117,8 @@ def test_a_planted_solution_is_found(place, planted, form, secrets, tmp_path):
     path.write_text(json.dumps(notebook), encoding="utf-8")
     (leak,) = find_leaks([tmp_path], secrets)
     assert leak.path == path.as_posix()
-    assert ("nearest_gap in gap.ipynb" if planted is SOLUTION else "mean_of_widest in grader/gaps/widest.py") in leak.what
+    whose = "nearest_gap in gap.ipynb" if planted is SOLUTION else "mean_of_widest in grader/gaps/widest.py"
+    assert whose in leak.what
     assert leak.place.startswith(("cell ", "the notebook's metadata"))
 
 

@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 from playwright.sync_api import sync_playwright
 
-from .lab import enter, jupyter
+from .lab import WAITS, enter, jupyter
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
-WAITS = pytest.StashKey()  # the waits of each lesson, from a key press to the picture, in ms
 
 
 @pytest.fixture(scope="package")
@@ -78,19 +77,14 @@ def screenshots(request):
     return folder
 
 
-@pytest.fixture(scope="package")
-def waits(request):
-    """Where the measured waits are gathered, by lesson, to be shown in the end."""
-    return request.config.stash.setdefault(WAITS, {})
-
-
-def pytest_terminal_summary(terminalreporter, config):
-    """Show how long a key press takes to become a picture."""
-    waits = config.stash.get(WAITS, {})
+def pytest_terminal_summary(terminalreporter):
+    """Show how long a key press takes to become a picture; tests tell it, in whatever process they run."""
+    reports = [*terminalreporter.getreports("passed"), *terminalreporter.getreports("failed")]
+    waits = [value for report in reports for name, value in report.user_properties if name == WAITS]
     if not waits:
         return
     terminalreporter.section("from a key press to the changed picture")
     terminalreporter.write_line(f"{'lesson':30} median [ms]  95 % below [ms]  presses")
-    for lesson, times in waits.items():
+    for lesson, times in waits:
         median, most = np.percentile(times, [50, 95])
         terminalreporter.write_line(f"{lesson:30} {median:11.0f}  {most:15.0f}  {len(times):7}")
