@@ -77,6 +77,12 @@ def arc_general(origin, direction, center, radius, start, sweep, signs=(-1, 1), 
     return INF
 
 
+def arc_from_the_wall(origin, direction, center, radius, start, sweep):
+    """Measures from the wall to the robot."""
+    t = arc_by_formula(origin, direction, center, radius, start, sweep)
+    return t if t == INF else -t
+
+
 def arc_near(origin, direction, center, radius, start, sweep):
     return arc_general(origin, direction, center, radius, start, sweep, signs=(-1,))
 
@@ -176,6 +182,10 @@ def least(values):
 
 def sonar_twice_as_wide(ranges, angles, axis, cone, range_min, range_max):
     return sonar_general(ranges, angles, axis, cone, lambda r: least(r[(r >= range_min) & (r <= range_max)]), half=1.0)
+
+
+def sonar_all_around(ranges, angles, axis, cone, range_min, range_max):
+    return min((r for r in ranges if range_min <= r <= range_max), default=INF)
 
 
 def sonar_not_wrapped(ranges, angles, axis, cone, range_min, range_max):
@@ -350,6 +360,7 @@ ANSWERS = {
             "bisection": arc_by_bisection,
         },
         "wrong": {
+            "sign": (arc_from_the_wall, 0, "sign turned round"),
             "near root": (arc_near, 2, "near root alone"),
             "whole circle": (arc_whole, 1, "whole circle for arc"),
             "far root first": (arc_far_first, 4, "far root before near"),
@@ -366,6 +377,7 @@ ANSWERS = {
     "sonar_reading": {
         "right": {"loop": sonar_by_loop, "cosine": sonar_by_cosine},
         "wrong": {
+            "all around": (sonar_all_around, 0, "cone left out"),
             "twice as wide": (sonar_twice_as_wide, 0, "whole cone to each side"),
             "not wrapped": (sonar_not_wrapped, 4, "bearing not wrapped"),
             "too near hides": (sonar_hidden, 3, "too near hides the rest"),

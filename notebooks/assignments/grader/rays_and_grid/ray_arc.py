@@ -160,6 +160,11 @@ RAY_ARC = task(
             name="None for no hit",
         ),
         Fault(
+            "The distance is right but for its sign: one ahead is never negative.",
+            like=lambda *args: hit_arc(*args) if hit_arc(*args) == INF else -hit_arc(*args),
+            name="sign turned round",
+        ),
+        Fault(
             "The circle has two roots. When the first one falls into the opening, where does the beam go on to?",
             like=arc_like((0,)),
             name="near root alone",

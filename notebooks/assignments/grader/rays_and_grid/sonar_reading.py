@@ -136,6 +136,11 @@ SONAR_READING = task(
     ),
     (
         Fault(
+            "That is the least echo from all around. Which of these bearings lie in the cone?",
+            like=sonar_like(lambda angles, axis, cone: np.ones(len(angles), dtype=bool)),
+            name="cone left out",
+        ),
+        Fault(
             "The cone's width counts from edge to edge: how far is it from the axis to one edge?",
             like=sonar_like(lambda angles, axis, cone: aside(angles, axis) <= cone),
             name="whole cone to each side",
