@@ -234,6 +234,14 @@ def name_around_mean(points, spread):
     return "nut" if away.std() > 1.35 * spread else "coin"
 
 
+def name_with_capitals(points, spread):
+    return name_by_spread(points, spread).title()
+
+
+def name_as_bool(points, spread):
+    return name_by_spread(points, spread) == "nut"
+
+
 def name_turned_round(points, spread):
     return {"nut": "coin", "coin": "nut"}[name_by_spread(points, spread)]
 
@@ -340,6 +348,8 @@ ANSWERS = {
             "one millimetre": (name_one_millimetre, 0, "a fixed limit"),
             "by share": (name_by_share, 3, "a limit by size alone"),
             "around the mean": (name_around_mean, 4, "mean taken for the centre"),
+            "capitals": (name_with_capitals, 0, "neither nut nor coin"),
+            "true or false": (name_as_bool, 0, "neither nut nor coin"),
             "turned round": (name_turned_round, 0, "names changed places"),
         },
     },

@@ -302,7 +302,7 @@ ANSWERS = {
             "heading mended": (pillars_heading_mended, 3, "limit taken for a hit"),
             "limit mended": (pillars_limit_mended, 2, "heading subtracted"),
             "mean mended": (pillars_mean_mended, 2, "limit taken for a hit"),
-            "widest": (pillars_widest, 5, None),
+            "widest": (pillars_widest, 5, "box taken for the circle"),
         },
     },
 }

@@ -25,6 +25,7 @@ Floats = NDArray[np.float64]
 CASES = 40  # random ones, in each part
 
 BENT = 0.0403  # a regular hexagon of reach 1 misses its best circle by this much, root mean square
+NAMES = ("nut", "coin")
 EXPLAINED = 1.7  # mean square over spread square: a coin's is 1, that of the nuts here 2.5 and more
 
 
@@ -110,6 +111,11 @@ NUT_OR_COIN = task(
     ),
     (
         Fault(
+            "Neither of the two names came back: return exactly 'nut' or 'coin', in small letters.",
+            when=lambda cases: all(case.got is not None and str(case.got) not in NAMES for case in cases),
+            name="neither nut nor coin",
+        ),
+        Fault(
             "The mean of the points is the middle only when all of the outline is seen.",
             like=lambda points, spread: "coin" if off_mean(points) <= np.sqrt(EXPLAINED) * spread else "nut",
             name="mean taken for the centre",
@@ -121,7 +127,7 @@ NUT_OR_COIN = task(
         ),
         Fault(
             "The names are the wrong way round.",
-            when=lambda cases: all(case.got in ("nut", "coin") and case.got != case.expected for case in cases),
+            when=lambda cases: all(case.got in NAMES and case.got != case.expected for case in cases),
             name="names changed places",
         ),
         Fault(

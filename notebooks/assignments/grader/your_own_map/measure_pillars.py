@@ -28,7 +28,7 @@ def pillars(poses: Floats, angles: Floats, ranges: Floats, range_max: float) -> 
 
 
 def with_bugs(*bugs: str) -> Callable[..., Floats]:
-    """Return the function with some of its bugs: "limit", "heading", "mean"."""
+    """Return the function with some of its bugs: "limit", "heading", "mean", "box"."""
 
     def measured_pillars(poses: Floats, angles: Floats, ranges: Floats, range_max: float) -> Floats:
         hit = ranges <= range_max if "limit" in bugs else ranges < range_max
@@ -37,14 +37,17 @@ def with_bugs(*bugs: str) -> Callable[..., Floats]:
         places = np.repeat(poses[:, None, :2], len(angles), axis=1)[hit]
         points = places + ranges[hit][:, None] * np.column_stack([np.cos(bearing), np.sin(bearing)])
         labels = pk.link(points)
-        return np.array([circle_of(points[labels == k], "mean" in bugs) for k in range(labels.max(initial=-1) + 1)])
+        return np.array([circle_of(points[labels == k], bugs) for k in range(labels.max(initial=-1) + 1)])
 
     return measured_pillars
 
 
-def circle_of(points: Floats, mean: bool) -> tuple[float, float, float]:
-    """Return x, y and radius of a circle through points, or around their mean."""
-    if mean:
+def circle_of(points: Floats, bugs: tuple[str, ...]) -> tuple[float, float, float]:
+    """Return x, y and radius of a circle through points, around their mean, or in the box around them."""
+    if "box" in bugs:
+        x, y = (points.min(axis=0) + points.max(axis=0)) / 2
+        return float(x), float(y), float(np.ptp(points, axis=0).max() / 2)
+    if "mean" in bugs:
         x, y = points.mean(axis=0)
         return float(x), float(y), float(np.hypot(*(points - (x, y)).T).mean())
     circle = pk.fit_circle(points)
@@ -122,15 +125,17 @@ HINTS = {
     "heading": "A bug is left: draw the hits of one turned robot. Do bearings count from its heading?",
     "limit": "A bug is left: what does this sensor read where nothing is hit, and what becomes of it?",
     "mean": "A bug is left: where is the mean of points on one side of a circle?",
+    "box": "A bug is left: where is the middle of a box around points on one side of a circle?",
 }
 NAMES = {
     "heading": "heading subtracted",
     "limit": "limit taken for a hit",
     "mean": "mean taken for the centre",
+    "box": "box taken for the circle",
 }
 # The bug that shows, and those that are left; where only one of them shows, it is found alone.
 LEFT = (
-    *(("heading", "heading"), ("limit", "limit"), ("mean", "mean")),
+    *(("heading", "heading"), ("limit", "limit"), ("mean", "mean"), ("box", "box")),
     *(("heading", "heading", "mean"), ("limit", "limit", "mean"), ("limit", "limit", "heading", "mean")),
 )
 
