@@ -240,6 +240,31 @@ def test_the_demonstration_file_holds_the_scans_of_the_demonstration():
     assert (stored.poses == made.poses).all()
 
 
+def loaded_in(folder, capsys):
+    """Run the cell that loads the scans in a folder, and return what it says."""
+    with contextlib.chdir(folder):
+        exec(source(CELLS["own-scans"]), setup_of("my_shapes"))
+    plt.close("all")
+    return capsys.readouterr().out
+
+
+def test_the_notebook_says_whose_board_it_shows(tmp_path, capsys):
+    assert "demonstration's board, not yours" in loaded_in(SOURCE / "09_your_own_map", capsys)
+    own = personal_scans(pk.personal_world("ada", salt="a salt for the tests"))
+    with pytest.raises(FileNotFoundError, match="from your teacher, beside this notebook"):
+        loaded_in(tmp_path, capsys)
+    pk.save_scans(own, tmp_path / "my_scans.npz")
+    assert loaded_in(tmp_path, capsys) == "This is a board of your own.\n"
+
+
+def test_the_visible_test_says_that_it_took_long(monkeypatch, capsys):
+    scope = setup_of("my_shapes")
+    clock = iter([0.0, 25.0])
+    monkeypatch.setattr(time, "monotonic", lambda: next(clock))
+    scope["tried"](lambda _scans: [], None)
+    assert "It took 25 s" in capsys.readouterr().out
+
+
 def test_the_librarys_pipeline_works_again_after_a_mark():
     points = pk.Circle((0.1, 0.0), 0.05).outline(200)
     TASKS["my_shapes"].marked(lambda _scans: pk.find_shapes(points))

@@ -289,7 +289,7 @@ ANSWERS = {
             "too large": (shapes_large, 7, None),
             "shifted": (shapes_shifted, 8, None),
             "headings forgotten": (shapes_in_robot_frame, 1, "right in one frame only"),
-            "ready-made": (shapes_ready_made, 1, "raises RuntimeError"),
+            "ready-made": (shapes_ready_made, 0, "uses find_shapes"),
         },
     },
     "measure_pillars": {
