@@ -53,6 +53,18 @@ def table(path):
         return list(csv.DictReader(file))
 
 
+def edited(notebook):
+    """What happens in JupyterLab: cells are pasted, an answer is split, and cells that cannot be edited are deleted."""
+    cells = {about(cell).get("grade_id"): cell for cell in notebook["cells"]}
+    pasted = cells["ray_arc-text"], cells["ray_arc-visible"], cells["busy_cells"]
+    lost = cells["ps1-setup"], cells["sonar_reading-visible"], cells["busy_cells-hidden"]
+    kept = [{key: cell[key] for key in cell if key != "id"} for cell in notebook["cells"] if cell not in lost]
+    place = kept.index({key: cells["busy_cells"][key] for key in cells["busy_cells"] if key != "id"})
+    foreign = {**pasted[0], "metadata": {"nbgrader": {**about(pasted[0]), "grade_id": "ps9-text"}}}
+    kept[place:place] = [{key: cell[key] for key in cell if key != "id"} for cell in (*pasted, foreign)]
+    return {**notebook, "cells": kept, "nbformat_minor": 4}
+
+
 # --- the round trip -----------------------------------------------------------------------------------------
 
 
@@ -75,11 +87,17 @@ def graded(tmp_path_factory):
         points += expected
     problem_set.hand_in("mixed", problem_set.with_answers(mixture), listed=NUMBER)
     problem_set.hand_in("broken", '{"cells": [')
+    problem_set.hand_in("edited", edited(problem_set.reference()))
     before = tree_hash(course / "submitted")
     said["grade"] = teach(course, "grade", PS)
     assert tree_hash(course / "submitted") == before
     said["report"] = teach(course, "report", PS)
-    return course, problem_set, said, {"right": problem_set.points, "0123": 0, "mixed": points}
+    return (
+        course,
+        problem_set,
+        said,
+        {"right": problem_set.points, "edited": problem_set.points, "0123": 0, "mixed": points},
+    )
 
 
 def test_full_marks_none_and_exactly_the_expected_ones(graded):
@@ -95,10 +113,10 @@ def test_what_the_commands_say(graded):
     assert said["check"].splitlines()[-1] == "All is there."
     assert said["release"] == f"release/{PS} is ready: no solution was found in it\n"
     assert "broken: ps1.ipynb: is not JSON" in said["grade"]
-    assert "4 submissions in" in said["grade"]
-    assert "3 graded, 1 not graded" in said["grade"]
+    assert "5 submissions in" in said["grade"]
+    assert "4 graded, 1 not graded" in said["grade"]
     assert "submitted/ is as it was" in said["grade"]
-    assert "4 handed in, 3 graded" in said["report"]
+    assert "5 handed in, 4 graded" in said["report"]
     assert str(course / "reports" / PS) in said["report"]
 
 
@@ -126,10 +144,10 @@ def test_the_overview_counts_each_wrong_answer(graded):
     lines = table(course / "reports" / PS / "overview.csv")
     parts = [line for line in lines if line["part"]]
     assert len(parts) == 12
-    assert {line["students"] for line in lines} == {"3"}
+    assert {line["students"] for line in lines} == {"4"}
     for line in parts:
         mine = [row for row in wrong if row["part"] == line["part"] and row["task"] == line["task"]]
-        assert float(line["share_right"]) == pytest.approx(1 - len(mine) / 3, abs=1e-3)
+        assert float(line["share_right"]) == pytest.approx(1 - len(mine) / 4, abs=1e-3)
         counts = {line[f"wrong_{k}"]: int(line[f"count_{k}"]) for k in (1, 2, 3) if line[f"wrong_{k}"]}
         assert sum(counts.values()) == len(mine)
         assert counts["not attempted"] == 1
@@ -139,7 +157,14 @@ def test_the_overview_counts_each_wrong_answer(graded):
 def test_a_fault_has_its_line(graded):
     course, _, _, _ = graded
     rows = table(course / "reports" / PS / "faults.csv")
-    assert [(row["student"], row["cell"], row["name"]) for row in rows] == [("broken", "ps1.ipynb", "not a notebook")]
+    lost = ("ps1-setup", "sonar_reading-visible", "busy_cells-hidden")
+    assert [(row["student"], row["cell"], row["name"]) for row in rows] == [
+        ("broken", "ps1.ipynb", "not a notebook"),
+        *(("edited", cell, "cell missing") for cell in lost),
+    ]
+    html = (course / "feedback" / "edited" / PS / f"{PS}.html").read_text("utf-8")
+    for cell in lost:
+        assert re.search(f"{cell}</code> <em>was missing in what was handed in: it was put back", html)
 
 
 def test_the_feedback_holds_the_marks_and_what_is_off(graded):

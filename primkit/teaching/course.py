@@ -30,7 +30,16 @@ STUDENTS = "students.csv"
 COLUMNS = ("id", "first_name", "last_name", "email")  # what `nbgrader db student import` reads
 ID = re.compile(r"[\w@.-]+")  # anything else means something to nbgrader's search for files, or to the system
 
-CONFIG = '''\
+# How a submission is put in order: nbgrader's own steps, and ours between them.
+STEPS = [
+    "nbgrader.preprocessors.ClearOutput",
+    "nbgrader.preprocessors.DeduplicateIds",
+    "primkit.teaching.sanitizing.WholeNotebook",
+    "nbgrader.preprocessors.OverwriteKernelspec",
+    "nbgrader.preprocessors.OverwriteCells",
+    "nbgrader.preprocessors.CheckCellMetadata",
+]
+CONFIG = f'''\
 """nbgrader's settings for this course: read whenever nbgrader runs in this folder."""
 
 from pathlib import Path
@@ -39,8 +48,10 @@ c = get_config()  # noqa: F821 - nbgrader's own
 course = str(Path(__file__).resolve().parent)
 c.CourseDirectory.root = course
 
-# A cell that was deleted is put back, and has no points for an answer that is not there.
+# Copied cells are the student's own; graded cells and locked code that were deleted are put back.
 c.OverwriteCells.add_missing_cells = True
+c.Autograde.sanitize_preprocessors = {STEPS}
+c.WholeNotebook.course = course
 
 # Submissions run with primkit's careful way to execute in the place of nbgrader's own.
 c.Autograde.autograde_preprocessors = [

@@ -78,7 +78,7 @@ class CarefulExecute(Execute):  # type: ignore[misc]
 
     def preprocess(self, nb: Any, resources: Any = None, km: Any = None) -> Any:
         """Run a notebook in a scratch copy of its folder."""
-        self.faults: list[dict[str, Any]] = []
+        self.faults: list[dict[str, Any]] = list(nb.metadata.get("primkit", {}).get("faults", ()))  # of its cells
         self.guilty: set[int] = set()
         self.groups: list[int] = []  # of processes: each kernel's, with what it has started
         folder = Path(resources["metadata"]["path"])

@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from .course import Course
+from .course import STEPS, Course
 from .handed_in import Fault, file_faults, tree_hash
 from .running import nbgrader
 
@@ -81,7 +81,8 @@ def _one(course: Course, name: str, student: str, journal: Journal, again: bool)
         return "unchanged", "graded before, and not changed since"
     faults, start = file_faults(course, name, student), time.monotonic()
     if not faults:
-        words = ("autograde", name, f"--student={student}", "--force")
+        steps = f"--Autograde.sanitize_preprocessors={STEPS}"  # also in a course that was made without
+        words = ("autograde", name, f"--student={student}", "--force", steps)
         done = nbgrader(course, *words, log=course.reports(name) / "log" / f"{student}.txt", seconds=SECONDS)
         if done.code != 0:
             faults.append(Fault(student, "-", "not graded", f"nbgrader could not grade it: {done.reason}"))

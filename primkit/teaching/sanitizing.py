@@ -1,0 +1,78 @@
+"""Sanitizing: a submission's cells put in order before it runs, whatever an editor has done to them.
+
+JupyterLab copies nbgrader's marks with a pasted or split cell, and lets a student delete a cell that cannot be edited.
+nbgrader takes the marks off all copies but the last, and then stumbles over those that have none. ``WholeNotebook``
+comes between these two steps: a copy is the student's own cell from there on; a locked code cell or a graded cell that
+is missing, the imports at the top above all, comes back from the release, with a note above it. An answer's own cell
+does not: its stub would overwrite an answer that was typed elsewhere.
+
+In:  a submission without double marks, and ``release/`` of the course.
+Out: a notebook that nbgrader can grade; ``metadata.primkit.faults`` names what came back.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import nbformat
+from nbformat.v4 import new_markdown_cell
+from nbgrader.preprocessors import NbGraderPreprocessor
+from traitlets import Unicode
+
+MISSING = "was missing in what was handed in: it was put back"
+
+
+class WholeNotebook(NbGraderPreprocessor):  # type: ignore[misc]
+    """Put the cells of a submission in order; see this module."""
+
+    course = Unicode(".", help="The course folder.").tag(config=True)
+
+    def preprocess(self, nb: Any, resources: Any) -> Any:
+        """Take off marks that mean nothing, and put back what is missing."""
+        about = resources["nbgrader"]
+        path = Path(self.course, "release", about["assignment"], f"{about['notebook']}.ipynb")
+        released = nbformat.read(path, as_version=4).cells if path.is_file() else None  # type: ignore[no-untyped-call]
+        known = None if released is None else {_mark(cell) for cell in released}
+        for cell in nb.cells:
+            name = _mark(cell)
+            if name is None or (known is not None and name not in known):
+                cell.metadata.pop("nbgrader", None)
+        lost = _put_back(nb, released or [])
+        nb.metadata["primkit"] = {"faults": [{"cell": name, "name": "cell missing", "says": MISSING} for name in lost]}
+        return nb, resources
+
+
+def _put_back(nb: Any, released: list[Any]) -> list[str]:
+    """Put back what is missing, each after the last cell before it that is there; return their names."""
+    lost: list[str] = []
+    place = 0
+    for cell in released:
+        names = [_mark(each) for each in nb.cells]
+        name = _mark(cell)
+        if name is None:
+            continue
+        if name in names:
+            place = names.index(name) + 1
+        elif _needed(cell):
+            back = type(cell)({key: value for key, value in cell.items() if key != "id"})
+            note = new_markdown_cell(f"*The cell* `{name}` *{MISSING}.*")  # type: ignore[no-untyped-call]
+            note.pop("id", None)
+            if nb.nbformat_minor >= 5:
+                note["id"], back["id"] = f"note-{len(lost)}", f"put-back-{len(lost)}"
+            nb.cells[place:place] = [note, back]
+            place += 2
+            lost.append(name)
+    return lost
+
+
+def _mark(cell: Any) -> str | None:
+    """Return the name that nbgrader knows a cell by."""
+    name = (cell["metadata"].get("nbgrader") or {}).get("grade_id")
+    return name if isinstance(name, str) else None
+
+
+def _needed(cell: Any) -> bool:
+    """Tell whether a submission needs this cell of the release."""
+    about = cell["metadata"]["nbgrader"]
+    return bool(about.get("grade") or (about.get("locked") and cell["cell_type"] == "code"))
