@@ -305,8 +305,8 @@ def test_study_stopped_by_ctrl_c_continues(tmp_path):
         time.sleep(0.01)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: the workers get it as well
     out, err = process.communicate(timeout=60)
-    assert err.decode() == f"primkit: stopped; the same command continues, with what {journal} holds\n"
-    assert (process.returncode, out) == (130, b"")
+    stopped = f"primkit: stopped; the same command continues, with what {journal} holds\n"
+    assert (process.returncode, err.decode(), out) == (130, stopped, b"")
     assert journal.read_bytes().endswith(b"\n")
 
 
