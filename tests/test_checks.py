@@ -216,3 +216,11 @@ def test_the_stub_in_a_lesson_has_the_argument_names_of_its_check():
                     assert list(itertools.islice(names, len(mine))) == mine
                     found.add(node.name)
     assert found <= set(TASKS)
+
+
+def test_an_argument_that_was_left_out_is_named_as_that():
+    answer = TASKS["drive_step"](lambda pose: pose)
+    assert answer.says.endswith("\nKeep the arguments that are given: drive_step(pose, left, right, seconds).")
+    assert answer.fault == "asks for other arguments"
+    inside = TASKS["drive_step"](lambda *_arguments: (lambda one: one)())
+    assert inside.fault == "raises TypeError"

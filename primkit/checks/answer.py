@@ -37,6 +37,7 @@ Verdict = Literal["not attempted", "wrong", "error", "right"]
 Args = tuple[Any, ...]
 
 CHANGES = "changes its arguments"
+ASKS = "asks for other arguments"
 SEED = 20  # the same cases for everybody, on every run
 
 SIGNS: dict[Verdict, str] = {"not attempted": "○", "wrong": "✗", "error": "!", "right": "✓"}
@@ -153,7 +154,11 @@ class Check:
                 if not cases and isinstance(error, NotImplementedError):  # the stub of a problem set
                     return Answer("not attempted", f"{self.name} still raises NotImplementedError.")
                 kind = type(error).__name__
-                return Answer("error", f"{self._call(args)} raised {kind}: {error}", f"raises {kind}")
+                says = f"{self._call(args)} raised {kind}: {error}"
+                if isinstance(error, TypeError) and not _takes(mine, given):
+                    names = ", ".join(inspect.signature(self.reference).parameters)
+                    return Answer("error", f"{says}\nKeep the arguments that are given: {self.name}({names}).", ASKS)
+                return Answer("error", says, f"raises {kind}")
             if not cases and _is_stub(got):
                 return Answer("not attempted", f"{self.name} still returns `...`.")
             if not same(given, args):
@@ -214,6 +219,17 @@ def _quietly(function: Callable[..., Any], args: Args) -> Any:
     with redirect_stdout(io.StringIO()), warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         return function(*args)
+
+
+def _takes(function: Callable[..., Any], args: Args) -> bool:
+    """Tell whether a function can be called with these arguments, in this order."""
+    try:
+        inspect.signature(function).bind(*args)
+    except TypeError:
+        return False
+    except ValueError:  # one of those that do not say what they take
+        return True
+    return True
 
 
 def _is_stub(got: Any) -> bool:

@@ -3,8 +3,8 @@
 In:  a reference, a judge, usual faults, and for each part its words, its points and its cases.
 Out: a ``primkit.grading.Task``, which marks a student's function.
 
-All parts of a task share reference, judge and faults; they differ in their cases. So each part asks one question, and
-a wrong answer loses the points of the questions that it gets wrong, and of no other.
+All parts of a task share reference, judge and faults; they differ in their cases. So each part asks one question. A
+wrong answer loses every part in which it shows: a slip in a step that all cases need shows in all of them.
 """
 
 from __future__ import annotations
