@@ -74,7 +74,7 @@ def graded(tmp_path_factory):
     folder = tmp_path_factory.mktemp("teacher")
     said = {"new-course": in_a_new_process(folder, "new-course", "course")}
     course = folder / "course"
-    (course / "students.csv").write_text("id,first_name,last_name,email\nright,Ada,,\n0123,,,\nmixed,,,\n")
+    (course / "students.csv").write_text("id,first_name,last_name,email\nright,Ada,,\n0123,,,\nmixed,,,\nedited,,,\n")
     said["check"] = in_a_new_process(course, "check")
     said["release"] = in_a_new_process(course, "release", PS)
     problem_set = ProblemSet(course, PS)
@@ -105,6 +105,27 @@ def test_full_marks_none_and_exactly_the_expected_ones(graded):
     rows = table(course / "reports" / PS / "grades.csv")  # nbgrader's own export
     assert {row["student_id"]: float(row["score"]) for row in rows} == expected
     assert {float(row["max_score"]) for row in rows} == {15.0}
+    assert {row["state"] for row in rows} == {"graded"}
+
+
+def test_who_is_not_in_the_list_and_what_could_not_be_graded_is_told_apart(graded):
+    course, _, said, _ = graded
+    told = "broken  -  not in the list: is not in students.csv: a typing error?"
+    assert told in said["grade"]
+    assert told in said["report"]
+    assert "submitted/broken/ps1" in faults(Course(course))
+    page = (course / "feedback" / "broken" / PS / f"{PS}.html").read_text("utf-8")
+    assert "could not be graded. ps1.ipynb is not JSON: " in page
+    again = course.parent / "listed"
+    shutil.copytree(course, again)
+    with open(again / "students.csv", "a", encoding="utf-8") as file:
+        file.write("broken,,,\nlazy,,,\nlate,,,\n")
+    nbgrader(Course(again), "db", "student", "import", "students.csv")
+    ProblemSet(again, PS).hand_in("late", "{}")
+    assert "not in the list" not in teach(again, "report", PS)
+    states = {row["student_id"]: row["state"] for row in table(again / "reports" / PS / "grades.csv")}
+    assert states["broken"] == "could not be graded"
+    assert (states["lazy"], states["late"]) == ("nothing handed in", "not yet graded")
 
 
 def test_what_the_commands_say(graded):
@@ -159,6 +180,7 @@ def test_a_fault_has_its_line(graded):
     rows = table(course / "reports" / PS / "faults.csv")
     lost = ("ps1-setup", "sonar_reading-visible", "busy_cells-hidden")
     assert [(row["student"], row["cell"], row["name"]) for row in rows] == [
+        ("broken", "-", "not in the list"),
         ("broken", "ps1.ipynb", "not a notebook"),
         *(("edited", cell, "cell missing") for cell in lost),
     ]
@@ -248,10 +270,12 @@ def small_course(root):
         return nbformat.v4.new_code_cell(source, metadata={"nbgrader": flags | more})
 
     solution = "def radius():\n    ### BEGIN SOLUTION\n    return 0.07\n    ### END SOLUTION"
+    answer = {"nbgrader": cell("", "why", grade=True, solution=True, locked=False, points=2).metadata["nbgrader"]}
     cells = [
         cell(LOOKS, "looks"),
         cell(solution, "radius", solution=True, locked=False),
         cell(HIDDEN, "radius-hidden", grade=True, points=3, cell_type="code"),
+        nbformat.v4.new_markdown_cell("Why?", metadata=answer),
     ]
     about_it = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
     nbformat.write(nbformat.v4.new_notebook(cells=cells, metadata=about_it), source / "map.ipynb")
@@ -274,7 +298,8 @@ def test_everybody_is_graded_on_their_own_map(tmp_path):
         # What the student's code can see: neither the salt nor the teacher's environment.
         secrets = ("a password", course.salt())
         looks = f"import os\nassert not [word for word in {secrets!r} if word in str(dict(os.environ))]"
-        notebook = with_cell(problem_set.with_answers({"radius": f"def radius():\n    return {radius}"}), looks)
+        answers = {"radius": f"def radius():\n    return {radius}", "why": {"ada": "Far away."}.get(name)}
+        notebook = with_cell(problem_set.with_answers(answers), looks)
         folder = problem_set.hand_in(name, notebook)
         (folder / "my_scans.npz").write_bytes(scans["ada"])
     os.environ["LEAKED"] = "a password"
@@ -283,8 +308,17 @@ def test_everybody_is_graded_on_their_own_map(tmp_path):
     finally:
         del os.environ["LEAKED"]
     assert "to look at" not in said
-    teach(course.root, "report", "map")
-    scores = {row["student_id"]: float(row["score"]) for row in table(course.root / "reports" / "map" / "grades.csv")}
+    assert "1 written answer waits to be marked by hand: in formgrader" in said
+    assert "`nbgrader generate_feedback map --force`" in said
+    pages = {name: (course.root / "feedback" / name / "map" / "map.html").read_text("utf-8") for name in scans}
+    assert "Not yet marked: why. The score does not count that yet." in pages["ada"]
+    assert '<a href="#why">Written response</a> (not yet marked, of 2.0)' in pages["ada"]
+    assert "Score: 0.0 / 2.0" not in pages["ada"]
+    assert "ot yet marked" not in pages["bob"]  # who wrote nothing has 0
+    assert "not in students.csv" not in teach(course.root, "report", "map")
+    rows = table(course.root / "reports" / "map" / "grades.csv")
+    assert [row["state"] for row in rows] == ["graded; 1 to be marked by hand", "graded"]
+    scores = {row["student_id"]: float(row["score"]) for row in rows}
     assert scores == {"ada": 3.0, "bob": 0.0}
 
 
@@ -576,6 +610,21 @@ def test_a_hash_sees_every_change(tmp_path):
     assert len(seen) == 5  # without the file it is as before
     (tmp_path / "__pycache__").mkdir()
     assert tree_hash(tmp_path) in seen
+
+
+def test_the_pack_s_expression_places_the_files_of_a_class():
+    page = (ROOT / "notebooks" / "teacher" / "running.md").read_text(encoding="utf-8")
+    expression = re.search(r'named_regexp = \(\n +r"(.*)"', page)[1]
+    for file, student, notebook in (
+        ("s002_ps1.ipynb", "s002", "ps1"),
+        ("s002_12_ps1.ipynb", "s002", "ps1"),
+        ("s002_12_ps1 (1).ipynb", "s002", "ps1"),
+        ("s002_ps1-2.ipynb", "s002", "ps1"),
+        ("s.b@x_a_b_09_your_own_map(3).ipynb", "s.b@x", "09_your_own_map"),
+    ):
+        found = re.match(expression, f"extracted/{file}")
+        assert (found["student_id"], found["file_id"]) == (student, notebook)
+    assert not re.match(expression, "extracted/s002_ps1_notes.ipynb")
 
 
 def test_the_course_is_the_folder_that_is_given(tmp_path):

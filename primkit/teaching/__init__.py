@@ -13,18 +13,19 @@ Out: a course folder, and in it what students get, grades, feedback, reports.
 
 The rooms, each of which imports only those before it:
 
-=================  ===========================================================
-``untrusted.py``   what grading runs, and what that can reach: read it first
-``course.py``      the course folder, and what lies where in it
-``running.py``     nbgrader's commands, each in a process of its own
-``leaks.py``       is a solution in what students get?
-``checking.py``    is all there, and how is each fault mended?
-``sanitizing.py``  a submission's cells in order
-``executing.py``   how a submission is run; nbgrader calls this
-``handed_in.py``   is there a notebook that can be run?
-``releasing.py``   the students' version, and their personal maps
-``grading.py``     every submission on its own
-``overview.py``    what the class did, task by task
-``reporting.py``   the same as text, tables and a figure
-=================  ===========================================================
+===================  ===========================================================
+``untrusted.py``     what grading runs, and what that can reach: read it first
+``course.py``        the course folder, and what lies where in it
+``running.py``       nbgrader's commands, each in a process of its own
+``leaks.py``         is a solution in what students get?
+``checking.py``      is all there, and how is each fault mended?
+``sanitizing.py``    a submission's cells in order
+``executing.py``     how a submission is run; nbgrader calls this
+``handed_in.py``     is there a notebook that can be run?
+``handing_back.py``  what nbgrader's feedback lacks
+``releasing.py``     the students' version, and their personal maps
+``grading.py``       every submission on its own
+``overview.py``      what the class did, task by task
+``reporting.py``     the same as text, tables and a figure
+===================  ===========================================================
 """

@@ -17,7 +17,8 @@ from pathlib import Path
 from typing import Any
 
 from .course import STEPS, Course
-from .handed_in import Fault, file_faults, tree_hash
+from .handed_in import Fault, file_faults, strangers, tree_hash
+from .handing_back import hand_back, waiting
 from .running import nbgrader
 
 JOURNAL = "graded.json"
@@ -61,6 +62,8 @@ def grade(
     if counts["graded"]:
         made = nbgrader(course, "generate_feedback", name, "--force", log=course.reports(name) / "log" / "feedback.txt")
         say("feedback/ is ready" if made.code == 0 else f"feedback/ is not complete: {made.reason}")
+    open_cells = waiting(course, name)
+    hand_back(course, name, journal.entries if counts["graded"] else journal.failed(), open_cells)
     same = tree_hash(*folders) == before
     took = time.monotonic() - start
     told = ", ".join(f"{count} {words}" for words, count in counts.items() if count)
@@ -70,7 +73,13 @@ def grade(
         if same
         else "CHANGED: submitted/ is not as it was; see the journal for whose run it was"
     )
-    return journal.faults()
+    if number := sum(map(len, open_cells.values())):
+        answers, wait = ("answer", "waits") if number == 1 else ("answers", "wait")
+        say(
+            f"{number} written {answers} {wait} to be marked by hand: in formgrader, a page of `jupyter lab`; then "
+            f"`nbgrader generate_feedback {name} --force`"
+        )
+    return [*strangers(course, name), *journal.faults()]
 
 
 def _one(course: Course, name: str, student: str, journal: Journal, again: bool) -> tuple[str, str]:
@@ -130,6 +139,10 @@ class Journal:
         new = self.path.with_suffix(".new")
         new.write_text(json.dumps(self.entries, indent=1, sort_keys=True), encoding="utf-8")
         new.replace(self.path)
+
+    def failed(self) -> dict[str, Any]:
+        """Return the entries of those that could not be graded."""
+        return {student: entry for student, entry in self.entries.items() if not entry["graded"]}
 
     def faults(self) -> list[Fault]:
         """Return all that went wrong, student by student."""

@@ -11,7 +11,7 @@ import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from .course import ID, Course
+from .course import ID, STUDENTS, Course
 
 LARGEST = 50  # megabytes of a notebook: more is output that never ended
 
@@ -47,6 +47,22 @@ def file_faults(course: Course, name: str, student: str) -> list[Fault]:
         elif wrong := _not_a_notebook(path):
             faults.append((path.name, "not a notebook", wrong))
     return [Fault(student, where, short, says) for where, short, says in faults]
+
+
+def listed(course: Course) -> list[str]:
+    """Return the ids in the list of students; none while the list cannot be read, which ``check`` says."""
+    try:
+        return course.students()
+    except ValueError:
+        return []
+
+
+def strangers(course: Course, name: str) -> list[Fault]:
+    """Return a fault for each who handed in and is not in the list of students; none while the list is empty."""
+    students = listed(course)
+    unknown = [student for student in course.submitted(name) if students and student not in students]
+    says = f"is not in {STUDENTS}: a typing error? rename the folder, or add a line and release again"
+    return [Fault(student, "-", "not in the list", says) for student in unknown]
 
 
 def _not_a_notebook(path: Path) -> str | None:

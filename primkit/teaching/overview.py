@@ -16,7 +16,7 @@ from typing import Any
 from ..grading.table import MIME
 from .course import Course
 from .grading import Journal
-from .handed_in import Fault
+from .handed_in import Fault, strangers
 
 UNNAMED = "wrong in another way"
 
@@ -114,7 +114,7 @@ def overview(course: Course, name: str) -> Overview:
         of,
         scores,
         tuple(lines.values()),
-        tuple(journal.faults()),
+        (*strangers(course, name), *journal.faults()),
         tuple(wrong),
     )
 

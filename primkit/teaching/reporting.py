@@ -10,12 +10,16 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
 from typing import Any
 
 from ..formats.files import write_atomically
 from ..plots.story import save_figure
 from ..plots.teaching import class_figure
 from .course import Course
+from .grading import Journal
+from .handed_in import listed
+from .handing_back import state, waiting
 from .overview import Line, Overview, overview
 from .running import nbgrader
 
@@ -44,14 +48,39 @@ def report(course: Course, name: str) -> Iterator[str]:
     )
     save_figure(figure, folder / "overview.png")
     exported = nbgrader(course, "export", f"--to={folder / 'grades.csv'}")
+    if exported.code == 0:
+        _with_states(course, folder / "grades.csv")
     yield from _said(seen)
     yield ""
     yield f"Wrote  {', '.join([*tables, 'overview.png'])} in {folder}"
     yield (
-        f"Wrote  {folder / 'grades.csv'}: nbgrader's export, for your school's system"
+        f"Wrote  {folder / 'grades.csv'}: nbgrader's export; its last column tells the zeros apart"
         if exported.code == 0
         else f"nbgrader's export failed: {exported.reason}"
     )
+
+
+def _with_states(course: Course, path: Path) -> None:
+    """Add a last column to nbgrader's export: whether a 0 is for an answer, for none, or for a broken file."""
+    with open(path, encoding="utf-8", newline="") as file:
+        head, *rows = list(csv.reader(file))
+    students = listed(course)
+    sets = {name for name in course.sets() if (course.root / "release" / name).is_dir()}
+    journals = {name: Journal(course, name).entries for name in sets}
+    handed_in = {name: set(course.submitted(name)) for name in sets}
+    open_cells = {name: waiting(course, name) for name in sets}
+    for row in rows:
+        name, student = row[head.index("assignment")], row[head.index("student_id")]
+        if name in sets:
+            row.append(
+                state(
+                    journals[name].get(student),
+                    handed_in=student in handed_in[name],
+                    open_cells=len(open_cells[name].get(student, ())),
+                    listed=not students or student in students,
+                )
+            )
+    write_atomically(path, _csv([[*head, "state"], *rows]))
 
 
 def _usual(line: Line, most: int = USUAL) -> list[tuple[str, int]]:
