@@ -49,7 +49,15 @@ def _same_pose(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
     if values.shape != (3,) or not np.isfinite(values).all():
         return _as_array(got, expected, args)
     turns = np.round((values[2] - expected[2]) / (2 * np.pi))
-    return _as_array(values - [0.0, 0.0, 2 * np.pi * turns], expected, args)
+    values = values - [0.0, 0.0, 2 * np.pi * turns]
+    worst = int(np.argmax(np.abs(values - expected)))
+    if abs(values[worst] - expected[worst]) <= EXACT:
+        return None
+    got, wanted = (judges.shown(float(value[worst])) for value in (values, expected))
+    if got == wanted:  # four digits would look like rounding
+        got, wanted = (f"{value[worst]:.9f}" for value in (values, expected))
+    name, unit = (("x", "m"), ("y", "m"), ("heading", "rad"))[worst]
+    return f"{name}: got {got} {unit}, expected {wanted} {unit}"
 
 
 def _drives(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
@@ -84,6 +92,11 @@ def _with(change: Callable[[Pose, float, float, float], tuple[Any, ...]]) -> Cal
     return lambda *args: pose_after(*change(*args))
 
 
+def _after(fixed: float) -> Callable[..., Floats]:
+    """Return a faulty step: the right one for a fixed time."""
+    return lambda pose, left, right, _seconds: pose_after(pose, left, right, fixed)
+
+
 def _axle_forgotten(pose: Pose, left: float, right: float, seconds: float) -> Floats:
     """Return the step whose wheels are a metre apart."""
     way, apart = (left + right) / 2, (right - left) / 2 * AXLE
@@ -105,10 +118,28 @@ def _in_own_frame(pose: Pose, left: float, right: float, seconds: float) -> Floa
     return np.asarray(pose) + pose_after((0.0, 0.0, 0.0), left, right, seconds)
 
 
+def _in_degrees(pose: Pose, left: float, right: float, seconds: float) -> Floats:
+    return pose_after(pose, left, right, seconds) * [1.0, 1.0, 180 / np.pi]
+
+
 def _only_straight_is_off(cases: list[Case]) -> bool:
     """Tell whether all is right but where both wheels turn equally fast."""
     off = [case for case in cases if case.off is not None]
     return all(case.args[1] == case.args[2] for case in off)
+
+
+def _pieces(cases: list[Case]) -> bool:
+    """Tell whether straight ways and headings are right, and arcs end beside the right place, but not far from it."""
+    for case in cases:
+        values = np.asarray(case.got, dtype=float) if case.off is None or case.off[:2] in ("x:", "y:") else None
+        if values is None:
+            return False
+        beside = np.hypot(*(values[:2] - case.expected[:2]))
+        chord = np.hypot(*(case.expected[:2] - case.args[0][:2]))
+        turned = abs(case.args[2] - case.args[1]) > EXACT
+        if not beside <= (chord / 2 if turned else EXACT) + EXACT:
+            return False
+    return True
 
 
 def _heading_stays(cases: list[Case]) -> bool:
@@ -164,10 +195,24 @@ drive_step = Check(
             name="not turned by the old heading",
         ),
         Fault("The place is right, the heading is the old one: add the turn.", when=_heading_stays),
+        *(
+            Fault(
+                "That is the pose after a fixed time: multiply by the time that is given.",
+                like=_after(fixed),
+                name="time left out",
+            )
+            for fixed in (1.0, 0.1)
+        ),
+        Fault("The place is right, the heading is in degrees: radians are asked for.", like=_in_degrees),
         Fault(
-            "That is the pose after one second: multiply by the time.",
-            like=_with(lambda pose, left, right, seconds: (pose, left, right, 1.0)),  # noqa: ARG005 (that is the fault)
-            name="time left out",
+            "That is a place: a pose has a heading as well.",
+            when=lambda cases: all("of shape (2,)" in (case.off or "") for case in cases),
+            name="no heading",
+        ),
+        Fault(
+            "It is nearly right, as a way cut into straight pieces is: that never gets exact. The arc is one step.",
+            when=_pieces,
+            name="straight pieces",
         ),
     ),
 )

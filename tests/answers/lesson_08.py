@@ -109,6 +109,18 @@ def in_degrees(pose, left, right, seconds):
     return x, y, math.degrees(heading)
 
 
+def in_pieces(n, share=0.0):
+    """Straight pieces, each in a heading a share of its own turn on from its first one."""
+
+    def step(pose, left, right, seconds):
+        (x, y, heading), (v, w) = pose, speeds(left, right)
+        bearings = heading + w * seconds / n * (np.arange(n) + share)
+        way = v * seconds / n
+        return x + way * np.cos(bearings).sum(), y + way * np.sin(bearings).sum(), heading + w * seconds
+
+    return step
+
+
 def distances(outline, points):
     return np.linalg.norm(outline[:, None] - points[None], axis=2)
 
@@ -150,8 +162,11 @@ ANSWERS = {
             "along x": (along_x, "turn it by the old heading first"),
             "heading kept": (heading_kept, "add the turn"),
             "a second": (lambda pose, left, right, seconds: by_chord(pose, left, right, 1.0), "multiply by the time"),
-            "degrees": (in_degrees, "For example drive_step("),
-            "a place": (lambda pose, left, right, seconds: pose[:2], "expected shape (3,)"),
+            "a tenth": (lambda pose, left, right, seconds: by_chord(pose, left, right, 0.1), "multiply by the time"),
+            "degrees": (in_degrees, "radians are asked for"),
+            "two thousand pieces": (in_pieces(2000), "never gets exact"),
+            "midpoint pieces": (in_pieces(20, 0.5), "never gets exact"),
+            "a place": (lambda pose, left, right, seconds: pose[:2], "has a heading as well"),
         },
         "error": {"divides by zero": (divides_by_zero, "ZeroDivisionError")},
     },
