@@ -296,7 +296,9 @@ def test_two_fresh_studies_agree_in_all_but_time(maps, tmp_path):
 @posix
 def test_study_stopped_by_ctrl_c_continues(tmp_path):
     words = command("study", "--out", tmp_path, "--jobs", "2")
+    here = signal.signal(signal.SIGINT, signal.default_int_handler)  # who ignores it has deaf children
     process = subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
+    signal.signal(signal.SIGINT, here)
     journal = tmp_path / JOURNAL
     for _ in range(3000):
         # A few rows: both workers have started, and know what to do when they are stopped.
