@@ -170,7 +170,7 @@ def test_an_endless_loop_costs_its_parts_alone(function, thread):
     mark, took = marks
     assert mark.points == 2.0
     assert mark.rows[1].answer.fault == "out of time"
-    assert "within 0.2 s: is there a loop that never ends?" in mark.rows[1].off
+    assert "within 0.2 s: is there a loop that never ends, or is it too slow?" in mark.rows[1].off
     assert took < 2.0
 
 
@@ -288,3 +288,30 @@ def test_the_truth_is_the_student_s_while_graded_and_the_demonstration_otherwise
     save_world(hers, tmp_path / "truth.geojson")
     monkeypatch.setenv(TRUTH, str(tmp_path / "truth.geojson"))
     assert personal_truth() == hers
+
+
+# --- what a teacher reads ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("function", "fault"),
+    [
+        (lambda _v: None, "returns nothing"),
+        (lambda v: [v, v], "returns what cannot be judged"),
+        (lambda _v: -1.0, None),
+    ],
+    ids=["print for return", "another form", "another number"],
+)
+def test_what_is_wrong_in_any_task_has_a_name(function, fault):
+    assert {row.answer.fault for row in TASK.marked(function).rows if row.answer.verdict == "wrong"} == {fault}
+
+
+def test_what_is_off_in_every_part_is_said_once():
+    mark = TASK.marked("length", {})
+    says = "there is no function length: run its cell, and keep its name."
+    assert mark.common == says
+    for text in (repr(mark), mark._repr_html_()):
+        assert text.count(says) == 1
+        assert text.index(says) < text.index(TASK.parts[0].says)
+    assert {part["off"] for part in mark.data()["parts"]} == {says}
+    assert TASK.marked(lambda _v: -1.0).common == ""  # each part has its own example

@@ -397,6 +397,22 @@ def run(folder, sources, **settings):
     return [cell.outputs for cell in notebook.cells], noted
 
 
+def test_a_missing_function_is_told_by_the_error_of_its_cell(tmp_path):
+    mark = (
+        "from primkit.checks import Check, judges\nfrom primkit.grading import Part, Task\n"
+        "CHECK = Check('length', abs, lambda rng: [(1.0,)], judges.number('m'))\n"
+        "Task('length', [Part('plain', 2, CHECK)]).mark('length', globals())"
+    )
+    cells = ["def length(v):\n    return (v", "x = 1\ninput()\ndef area(v): pass", mark]
+    cells.append("from primkit.grading.cells import failure\nprint(failure('area')[1])")
+    outputs, _ = run(tmp_path / "x", cells)
+    shown = next(output.data[MIME] for output in outputs[2] if MIME in output.get("data", {}))
+    told = "there is no function length: its cell stops with SyntaxError in line 2: "
+    assert {part["fault"] for part in shown["parts"]} == {"its cell stops with SyntaxError"}
+    assert all(part["off"].startswith(told) for part in shown["parts"])
+    assert outputs[3][0].text.startswith("StdinNotImplementedError in line 2: ")
+
+
 def test_a_cell_that_ends_the_kernel_only_when_it_runs_again(tmp_path):
     once = (
         "import os\nfrom pathlib import Path\nseen = Path.home() / 'seen'\nseen.exists() and os._exit(1)\nseen.touch()"

@@ -20,6 +20,7 @@ The rooms, each of which imports only those before it:
 
 ============  ======================================================
 ``limit.py``  a time limit, and what it can stop
+``cells.py``  why a function is missing
 ``table.py``  ``Mark``: the points as text, as HTML, and for a report
 ``task.py``   ``Part`` and ``Task``
 ``truth.py``  the student's own board, while it is graded

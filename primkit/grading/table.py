@@ -79,34 +79,47 @@ class Mark:
         }
 
     @property
+    def common(self) -> str:
+        """What is off in every part alike, to be said once; empty otherwise."""
+        said = {row.off for row in self.rows}
+        return said.pop() if len(said) == 1 and len(self.rows) > 1 else ""
+
+    @property
     def _headline(self) -> str:
         return f"{self.task}: {self.points:g} of {self.of:g} points"
 
     def __repr__(self) -> str:
-        lines = [self._headline]
+        lines = [self._headline, *self.common.splitlines()]
         for row in self.rows:
-            off = "".join(f"\n    {line}" for line in row.off.splitlines()[1:])
-            first = f": {row.off.splitlines()[0]}" if row.off else ""
+            told = [] if self.common else row.off.splitlines()
+            off = "".join(f"\n    {line}" for line in told[1:])
+            first = f": {told[0]}" if told else ""
             lines.append(f"{SIGNS[row.answer.verdict]} {row.points:g} of {row.of:g}  {row.says}{first}{off}")
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
         head = "".join(f'<th scope="col" style="{LEFT}">{word}</th>' for word in ("points", "part", "what is off"))
+        once = f'<br><span style="font-weight:normal">{_lines(self.common)}</span>' if self.common else ""
         return (
             f'<table style="border-collapse:collapse;line-height:1.5"><caption style="{LEFT};font-weight:bold;'
-            f'color:inherit">{escape(self._headline)}</caption><thead><tr>{head}</tr></thead>'
-            f"<tbody>{''.join(map(_html_row, self.rows))}</tbody></table>"
+            f'color:inherit">{escape(self._headline)}{once}</caption><thead><tr>{head}</tr></thead>'
+            f"<tbody>{''.join(_html_row(row, told=bool(self.common)) for row in self.rows)}</tbody></table>"
         )
 
     def _repr_mimebundle_(self, **_wanted: Any) -> dict[str, Any]:
         return {"text/plain": repr(self), "text/html": self._repr_html_(), MIME: self.data()}
 
 
+def _lines(text: str) -> str:
+    return escape(text).replace("\n", "<br>")
+
+
 LEFT = "text-align:left;vertical-align:top;padding:2px 12px 2px 0"
 
 
-def _html_row(row: Row) -> str:
+def _html_row(row: Row, *, told: bool = False) -> str:
+    """Return a part's row; what is off is left out when it is told above the table."""
     verdict = row.answer.verdict
     sign = f'<b style="color:{COLORS[verdict]}">{SIGNS[verdict]}&nbsp;{row.points:g}&nbsp;of&nbsp;{row.of:g}</b>'
-    off = "" if row.answer.right else f"<i>{verdict}</i>: {escape(row.off)}".replace("\n", "<br>")
+    off = "" if row.answer.right else f"<i>{verdict}</i>" + ("" if told else f": {_lines(row.off)}")
     return "<tr>" + "".join(f'<td style="{LEFT}">{cell}</td>' for cell in (sign, escape(row.says), off)) + "</tr>"

@@ -15,17 +15,25 @@ The last expression of a grade cell is ``task.mark("half", globals())``: nbgrade
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import redirect_stderr
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ..arguments import as_positive
 from ..checks.answer import Answer, Check
+from .cells import failure
 from .limit import OutOfTime, TimeLimit
 from .table import Mark, Row
 
 SECONDS = 5.0  # for each part; a check with its few hundred cases needs less than one
+
+
+EVERY = re.compile(r"in (\d+) of \1 cases\.")  # all of them are wrong
+FORM = re.compile(  # how judges begin what they expect, when a result has another form
+    r"expected (a number such as|numbers in|points in an array|one label for|a circle:|a line:|a list|a set of)"
+)
 
 
 @dataclass(frozen=True)
@@ -52,9 +60,9 @@ class Part:
         try:
             # What is printed to stderr would count as a failed cell.
             with redirect_stderr(io.StringIO()), TimeLimit(seconds):
-                return self.check(function)
+                return _named(self.check(function))
         except OutOfTime:
-            says = f"{name} did not come to an end within {seconds:g} s: is there a loop that never ends?"
+            says = f"{name} did not end within {seconds:g} s: is there a loop that never ends, or is it too slow?"
             return Answer("error", says, "out of time")
         except KeyboardInterrupt:  # the whole cell's time is over, or somebody waits no longer
             raise
@@ -127,15 +135,30 @@ class Task:
         seconds = as_positive(seconds, "seconds")
         if isinstance(function, str):
             if function not in (scope or {}):
-                missing = Answer(
-                    "not attempted",
-                    f"there is no function {function}: run its cell, and keep its name.",
-                    "no such function",
-                )
+                missing = _missing(function)
                 return Mark(self.name, tuple(Row(part.says, part.points, missing) for part in self.parts))
             function = (scope or {})[function]
         rows = (Row(part.says, part.points, part.answer(function, seconds)) for part in self.parts)
         return Mark(self.name, tuple(rows))
+
+
+def _missing(name: str) -> Answer:
+    """Return why there is no function: its cell has failed, or it has another name, or none was written."""
+    failed = failure(name)
+    if failed is None:
+        says = f"there is no function {name}: run its cell, and keep its name."
+        return Answer("not attempted", says, "no such function")
+    kind, told = failed
+    return Answer("error", f"there is no function {name}: its cell stops with {told}.", f"its cell stops with {kind}")
+
+
+def _named(answer: Answer) -> Answer:
+    """Name what is wrong in any task: nothing is returned, or something of another form than was asked for."""
+    if answer.verdict != "wrong" or answer.fault is not None or not EVERY.match(answer.says):
+        return answer
+    if "is there a return?" in answer.says:
+        return replace(answer, fault="returns nothing")
+    return replace(answer, fault="returns what cannot be judged") if FORM.search(answer.says) else answer
 
 
 def _show(mark: Mark) -> None:

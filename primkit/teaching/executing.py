@@ -56,6 +56,8 @@ def _prepare():
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     except (ImportError, ValueError, OSError):
         pass
+    from primkit.grading.cells import watch
+    watch()
 _prepare()
 del _prepare
 """

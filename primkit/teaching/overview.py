@@ -11,6 +11,7 @@ import json
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from textwrap import shorten
 from typing import Any
 
 from ..grading.table import MIME
@@ -19,6 +20,7 @@ from .grading import Journal
 from .handed_in import Fault, strangers
 
 UNNAMED = "wrong in another way"
+WORDS = 60  # letters of a visible test's own words
 
 
 @dataclass
@@ -105,8 +107,9 @@ def overview(course: Course, name: str) -> Overview:
                 if like:
                     wrong += _parts(lines, grade.cell.name, student, mark, like, error)
                 elif error and grade.score < grade.max_score:
-                    line.wrong[error[0]] += 1
-                    wrong.append((student, grade.cell.name, "", *error))
+                    name, says = _visible(grade.cell.name, *error)
+                    line.wrong[name] += 1
+                    wrong.append((student, grade.cell.name, "", name, says))
     return Overview(
         name,
         len(course.submitted(name)),
@@ -148,6 +151,22 @@ def _cells(course: Course, name: str, student: str) -> dict[str, tuple[Any, tupl
             if about.get("grade") and cell["cell_type"] == "code":
                 found[about["grade_id"]] = _shown(cell["outputs"])
     return found
+
+
+def _visible(cell: str, name: str, says: str) -> tuple[str, str]:
+    """Return a name and words for the error of a visible test, as a teacher would say them.
+
+    >>> _visible("half-visible", "AssertionError", "got 2, expected 1")
+    ('got 2, expected 1', 'got 2, expected 1')
+    >>> _visible("half-visible", "NameError", "name 'half' is not defined")
+    ('no such function', "name 'half' is not defined")
+    """
+    if name in ("KeyboardInterrupt", "CellTimeoutError"):
+        return "out of time", says
+    if name == "NameError" and f"'{cell.removesuffix('-visible')}'" in says:
+        return "no such function", says
+    words = " ".join(says.split())
+    return (shorten(words, WORDS, placeholder=" ...") if name == "AssertionError" and words else name), says
 
 
 def _shown(outputs: Sequence[Any]) -> tuple[Any, tuple[str, str] | None]:
