@@ -520,7 +520,8 @@ BREAK = {
     "config": (lambda root: (root / "nbgrader_config.py").unlink(), "course folder", "new-course"),
     "limits": (lambda root: (root / "nbgrader_config.py").write_text(""), "nbgrader_config.py", "CarefulExecute"),
     "students": (lambda root: (root / "students.csv").write_text("name\nada\n"), "students.csv", "."),
-    "an id": (lambda root: (root / "students.csv").write_text("id\na/b\n"), "students.csv", "letters, digits"),
+    "semicolons": (lambda root: (root / "students.csv").write_text("id;email\na;\n"), "students.csv", "with commas)"),
+    "an id": (lambda root: (root / "students.csv").write_text("id\n\nb\na/b\n"), "students.csv", "in line 4"),
     "twice": (lambda root: (root / "students.csv").write_text("id\nada\nada\n"), "students.csv", "once"),
     "gradebook": (lambda root: (root / "gradebook.db").write_text("no base"), "gradebook.db", "put a copy"),
 }

@@ -142,12 +142,18 @@ class Course:
         with open(path, encoding="utf-8-sig", newline="") as file:
             table = csv.DictReader(file)
             if "id" not in (table.fieldnames or ()):
-                raise ValueError(f"{STUDENTS} must begin with the line {','.join(COLUMNS)}, got {table.fieldnames}")
-            ids = [row["id"] for row in table]
-        for name in ids:
+                wrong = ",".join(table.fieldnames or ())
+                semicolons = " (saved with semicolons: choose CSV with commas)" if ";" in wrong else ""
+                raise ValueError(
+                    f"{STUDENTS} must begin with the line {','.join(COLUMNS)}, got {short(wrong)}{semicolons}"
+                )
+            lines = [(table.line_num, row["id"]) for row in table]
+        ids = [name for _, name in lines]
+        for line, name in lines:
             if not name or not ID.fullmatch(name):
                 raise ValueError(
-                    f"{STUDENTS}: an id must be made of letters, digits and . _ - @ alone, got {short(name)}"
+                    f"{STUDENTS}: an id must be made of letters, digits and . _ - @ alone, "
+                    f"got {short(name)} in line {line}"
                 )
         if twice := sorted({name for name in ids if ids.count(name) > 1}):
             raise ValueError(f"{STUDENTS}: an id must stand there once, got twice: {', '.join(twice)}")
