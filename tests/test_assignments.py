@@ -17,6 +17,7 @@ from itertools import combinations, pairwise
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+import numpy as np
 import pytest
 
 import primkit as pk
@@ -263,6 +264,14 @@ def test_the_visible_test_says_that_it_took_long(monkeypatch, capsys):
     monkeypatch.setattr(time, "monotonic", lambda: next(clock))
     scope["tried"](lambda _scans: [], None)
     assert "It took 25 s" in capsys.readouterr().out
+
+
+def test_what_is_off_with_a_map_is_said_as_it_is():
+    shapes = list(personal_truth().shapes)
+    array = TASKS["my_shapes"].marked(lambda _scans: np.array(shapes, dtype=object))
+    assert "got ndarray with (" in array.rows[0].off
+    alone = TASKS["my_shapes"].marked(lambda _scans: shapes[:1])
+    assert "1 name is right" in alone.rows[1].off
 
 
 def test_the_librarys_pipeline_works_again_after_a_mark():

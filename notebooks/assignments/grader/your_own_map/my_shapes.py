@@ -69,7 +69,8 @@ def judged_by(off: Callable[[Report], str | None]) -> Judge:
 
     def judge(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None:
         if not isinstance(got, (list, tuple)) or not got:
-            return f"got {shown(got)}, expected a list of pk.Circle and pk.Polygon"
+            kind = f"{type(got).__name__} with " if isinstance(got, np.ndarray) else ""
+            return f"got {kind}{shown(got)}, expected a list of pk.Circle and pk.Polygon"
         try:
             return off(pk.evaluate(got, pk.World(expected, size=2.0), TOLERANCE))
         except (ValueError, TypeError):
@@ -95,7 +96,8 @@ def named(at_least: int) -> Callable[[Report], str | None]:
         wrong = [f"a {m.true.kind} is called a {m.found.kind}" for m in report.matches if not m.kind_right]
         if right >= at_least and not report.false_alarms:
             return None
-        return ", ".join([f"{right} names are right", *wrong, *["too many shapes"] * bool(report.false_alarms)])
+        names = "1 name is right" if right == 1 else f"{right} names are right"
+        return ", ".join([names, *wrong, *["too many shapes"] * bool(report.false_alarms)])
 
     return off
 
