@@ -194,10 +194,23 @@ def test_the_feedback_holds_the_marks_and_what_is_off(graded):
     html = {name: (course / "feedback" / name / PS / f"{PS}.html").read_text("utf-8") for name in ("right", "mixed")}
     for task in problem_set.solutions:
         assert f"{task}: 4 of 4 points" in html["right"]
+        assert f'<a href="#{task}-visible">{task}-visible</a> (Score: 1.0 / 1.0)' in html["right"]
         assert re.search(rf"{task}: \d of 4 points", html["mixed"])
     assert "<i>wrong</i>: in " in html["mixed"]
     assert ">grader</span>" in html["mixed"]  # which tests ran is seen, not what is in them
     assert "def hit_arc" not in html["mixed"]
+
+
+def test_a_course_that_was_made_before_takes_edited_cells_too(graded):
+    course, _, _, _ = graded
+    older = course.parent / "older"
+    shutil.copytree(course, older)
+    config = (older / "nbgrader_config.py").read_text("utf-8")
+    ours = re.compile(r"^c\.(Autograde\.sanitize_preprocessors|WholeNotebook\.course) = .*\n", re.MULTILINE)
+    (older / "nbgrader_config.py").write_text(ours.sub("", config))
+    said = teach(older, "grade", PS, "--student", "edited", "--again")
+    assert "edited: graded in " in said
+    assert "ps1-setup: was missing" in said
 
 
 def test_a_released_notebook_is_a_student_s(graded):

@@ -1,8 +1,8 @@
 """Handing back: what the feedback lacks as nbgrader makes it, and the state of each submission in words.
 
 In:  the gradebook, the journal of the grading, and ``feedback/``.
-Out: on each page the answers that nobody has marked yet are called so; a submission that could not be graded gets a
-     page that says why. ``state`` says the same for the table of grades, where both would look like a 0.
+Out: the head of each page names its tests, and calls answers that nobody has marked yet so; a submission that could not
+     be graded gets a page that says why. ``state`` says it for the table of grades, where all look like a 0.
 
 ``nbgrader generate_feedback``, once an answer is marked by hand, makes the pages anew.
 """
@@ -57,8 +57,14 @@ def hand_back(course: Course, name: str, entries: Mapping[str, Any], open_cells:
                 page.parent.mkdir(parents=True, exist_ok=True)
                 says = " ".join(_sentence(Fault(**fault)) for fault in entry["faults"])
                 page.write_text(PAGE.format(escape(notebook), escape(says)), encoding="utf-8")
-            elif open_cells.get(student) and page.is_file():
-                page.write_text(_marked_later(page.read_text(encoding="utf-8"), open_cells[student]), encoding="utf-8")
+            elif page.is_file():
+                html = page.read_text(encoding="utf-8")
+                html = re.sub(
+                    r'(<a href="#([\w.-]+)">)Test cell</a>', r"\1\2</a>", html
+                )  # which one, in the page's head
+                if open_cells.get(student):
+                    html = _marked_later(html, open_cells[student])
+                page.write_text(html, encoding="utf-8")
 
 
 def _sentence(fault: Fault) -> str:

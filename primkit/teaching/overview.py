@@ -107,9 +107,9 @@ def overview(course: Course, name: str) -> Overview:
                 if like:
                     wrong += _parts(lines, grade.cell.name, student, mark, like, error)
                 elif error and grade.score < grade.max_score:
-                    name, says = _visible(grade.cell.name, *error)
-                    line.wrong[name] += 1
-                    wrong.append((student, grade.cell.name, "", name, says))
+                    called, says = _visible(grade.cell.name, *error)
+                    line.wrong[called] += 1
+                    wrong.append((student, grade.cell.name, "", called, says))
     return Overview(
         name,
         len(course.submitted(name)),
