@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import matplotlib
+import numpy as np
 from hypothesis import settings
 
 # The same examples on every run and every machine; no time limit, which a busy machine would break.
@@ -20,3 +21,18 @@ def pytest_addoption(parser):
     parser.addoption(
         "--screenshots", type=Path, metavar="DIR", help="keep the browser's pictures of the lessons in this folder"
     )
+
+
+def pytest_terminal_summary(terminalreporter):
+    """Show how long a key press takes to become a picture; tests tell it, in whatever process they run."""
+    from tests.browser.lab import WAITS
+
+    reports = [*terminalreporter.getreports("passed"), *terminalreporter.getreports("failed")]
+    waits = [value for report in reports for name, value in report.user_properties if name == WAITS]
+    if not waits:
+        return
+    terminalreporter.section("from a key press to the changed picture")
+    terminalreporter.write_line(f"{'lesson':30} median [ms]  95 % below [ms]  presses")
+    for lesson, times in waits:
+        median, most = np.percentile(times, [50, 95])
+        terminalreporter.write_line(f"{lesson:30} {median:11.0f}  {most:15.0f}  {len(times):7}")

@@ -3,11 +3,10 @@
 import os
 import shutil
 
-import numpy as np
 import pytest
 from playwright.sync_api import sync_playwright
 
-from .lab import WAITS, enter, jupyter
+from .lab import enter, jupyter
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
@@ -75,16 +74,3 @@ def screenshots(request):
     if folder:
         folder.mkdir(parents=True, exist_ok=True)
     return folder
-
-
-def pytest_terminal_summary(terminalreporter):
-    """Show how long a key press takes to become a picture; tests tell it, in whatever process they run."""
-    reports = [*terminalreporter.getreports("passed"), *terminalreporter.getreports("failed")]
-    waits = [value for report in reports for name, value in report.user_properties if name == WAITS]
-    if not waits:
-        return
-    terminalreporter.section("from a key press to the changed picture")
-    terminalreporter.write_line(f"{'lesson':30} median [ms]  95 % below [ms]  presses")
-    for lesson, times in waits:
-        median, most = np.percentile(times, [50, 95])
-        terminalreporter.write_line(f"{lesson:30} {median:11.0f}  {most:15.0f}  {len(times):7}")
