@@ -167,4 +167,4 @@ def _show(mark: Mark) -> None:
     from IPython.display import display
 
     if get_ipython() is not None:
-        display(mark)  # type: ignore[no-untyped-call]
+        display(mark)  # type: ignore[no-untyped-call]  # IPython gives it no types
