@@ -4,6 +4,15 @@ const FAR = 1e-4; // m: lengths come in tenths of a millimetre
 const SMALL = 400; // px: in narrower pictures shapes have their kind written on them, and not their sizes
 const LABEL = "600 12px system-ui, sans-serif";
 
+// A part of a page, below its parent.
+const made = (parent, tag, className, attributes = {}, words = "") => {
+  const part = parent.appendChild(document.createElement(tag));
+  part.className = className;
+  part.textContent = words;
+  Object.entries(attributes).forEach(([name, value]) => part.setAttribute(name, value));
+  return part;
+};
+
 class Picture {
   constructor(canvas) {
     this.canvas = canvas;

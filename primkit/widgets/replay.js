@@ -5,14 +5,6 @@ const LEGEND = "Blue lines: beams. Dots: cells that were hit. Solid outline: see
 const STEP = 0.004; // m: the way is drawn in steps of this length
 const FASTER = [1, 4, 16]; // times as fast as it was driven
 
-const made = (parent, tag, className, attributes = {}, words = "") => {
-  const part = parent.appendChild(document.createElement(tag));
-  part.className = className;
-  part.textContent = words;
-  Object.entries(attributes).forEach(([name, value]) => part.setAttribute(name, value));
-  return part;
-};
-
 function build(el) {
   const root = made(el, "div", "primkit-scene replay", {
     "role": "group",

@@ -14,14 +14,6 @@ const LEGEND = [
   "Hatched: not seen yet. Grey: the truth. Scans of the robot alone: + at way-points, \u25c7 exploring.",
 ].join(" ");
 
-const made = (parent, tag, className, attributes = {}, words = "") => {
-  const part = parent.appendChild(document.createElement(tag));
-  part.className = className;
-  part.textContent = words;
-  Object.entries(attributes).forEach(([name, value]) => part.setAttribute(name, value));
-  return part;
-};
-
 // The page.
 
 function build(el) {
