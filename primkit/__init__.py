@@ -28,9 +28,9 @@ _STORY = {
     "robot": ("teleport_poses", "skipped_waypoints", "drive"),
     "raycast": ("cast_rays",),
     "lidar": ("Lidar", "Scans", "scan", "scan_blocks"),
-    "personal": ("personal_world",),
+    "course.personal": ("personal_world",),
     "grid": ("Grid",),
-    "changes": ("MovingGrid",),
+    "driving.moving_grid": ("MovingGrid",),
     "segmentation": ("segment", "kmeans", "count_by_silhouette", "link"),
     "ransac": ("run_ransac", "trials_needed"),
     "lines": ("Line", "fit_line", "find_lines"),
@@ -38,18 +38,19 @@ _STORY = {
     "measure": ("Detection", "measure_shape"),
     "steps": ("Steps",),
     "pipeline": ("find_shapes", "Settings", "PAPER", "ROBUST"),
-    "explorer": ("explore", "Exploration"),
+    "driving": ("explore", "Exploration"),
     "evaluation": ("evaluate", "match", "Report"),
     "formats": (
         *("load_world", "save_world", "load_scans", "save_scans"),
         *("Drive", "record_drive", "load_drive", "save_drive", "paper_suite", "scripted_drives"),
     ),
-    "study": ("run_study", "tables", "scripted_route"),
+    "driving.scripted": ("scripted_route",),
+    "study": ("run_study", "tables"),
     "plots": (
         *("plot_world", "plot_scan", "plot_points", "plot_clusters", "plot_found"),
         *("plot_story", "plot_drive", "save_figure"),
     ),
-    "widgets": ("drive_scene", "replay"),
+    "scene": ("drive_scene", "replay"),
 }
 # Rooms that are used by their own name: pk.widgets.rays(), pk.checks.ray_segment(mine).
 _ROOMS = ("widgets", "checks")
@@ -75,10 +76,11 @@ def __dir__() -> list[str]:
 
 if TYPE_CHECKING:
     from . import checks, widgets
-    from .changes import MovingGrid
     from .circles import find_circle, fit_circle
+    from .course.personal import personal_world
+    from .driving import Exploration, explore
+    from .driving.moving_grid import MovingGrid
     from .evaluation import Report, evaluate, match
-    from .explorer import Exploration, explore
     from .formats import (
         Drive,
         load_drive,
@@ -95,7 +97,6 @@ if TYPE_CHECKING:
     from .lidar import Lidar, Scans, scan, scan_blocks
     from .lines import Line, find_lines, fit_line
     from .measure import Detection, measure_shape
-    from .personal import personal_world
     from .pipeline import PAPER, ROBUST, Settings, find_shapes
     from .plots import (
         plot_clusters,
@@ -110,9 +111,9 @@ if TYPE_CHECKING:
     from .ransac import run_ransac, trials_needed
     from .raycast import cast_rays
     from .robot import drive, skipped_waypoints, teleport_poses
+    from .scene import drive_scene, replay
     from .segmentation import count_by_silhouette, kmeans, link, segment
     from .shapes import Circle, Polygon
     from .steps import Steps
     from .study import run_study, scripted_route, tables
-    from .widgets import drive_scene, replay
     from .world import World, random_world

@@ -14,20 +14,18 @@ Only argparse is loaded at first; each command loads what it needs, so that ``--
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from collections.abc import Sequence
 
 from . import __version__
-from .commands import board, many, speed, teach
-from .commands.words import LOOK, Parser, complain, nearest
+from .commands import board, many, teach
+from .commands.words import LOOK, Parser, exit_code, nearest
 
 COMMANDS = {
     "map": (board.map_board, board.MAP_TEXT, board.MAP_EXAMPLES, board.map_options),
     "study": (many.study, many.STUDY_TEXT, many.STUDY_EXAMPLES, many.study_options),
     "accuracy": (many.accuracy, many.ACCURACY_TEXT, many.ACCURACY_EXAMPLES, many.accuracy_options),
     "make-map": (board.make_map, board.MAKE_TEXT, board.MAKE_EXAMPLES, board.make_map_options),
-    "bench": (speed.bench, speed.TEXT, speed.EXAMPLES, speed.bench_options),
     "teach": (teach.teach, teach.TEXT, teach.EXAMPLES, teach.teach_options),
 }
 TEXT = "Map circles, triangles, rectangles and pentagons with a simulated robot and its LiDAR."
@@ -38,8 +36,6 @@ examples:
   primkit make-map --shapes 6 --style free --out room.geojson
   primkit map --map room.geojson         a board of your own
 """
-# What the library's sentences call differently.
-OPTIONS = {'style="free"': "--style free"}
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -50,28 +46,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     argv : sequence of str, optional
         The words after ``primkit``; those of the command line when not given.
     """
-    try:
-        try:
-            arguments = _parsed(sys.argv[1:] if argv is None else list(argv))
-            arguments.run(arguments)
-        finally:
-            sys.stdout.flush()  # that nobody reads on is noticed here, not while Python shuts down
-    except SystemExit as end:  # argparse's, after --help or a wrong value
-        return int(end.code or 0)
-    except BrokenPipeError:  # as in `primkit study | head`: nobody reads on, and nothing is wrong
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
-    except KeyboardInterrupt as stop:
-        return complain(str(stop) or "stopped by Ctrl-C", 130)
-    except OSError as error:
-        # Sentences from formats stand alone; the system's own come in parts.
-        return complain(f"{error.filename}: {error.strerror}" if error.filename else str(error))
-    except ValueError as error:
-        sentence = str(error)
-        for name, option in OPTIONS.items():
-            sentence = sentence.replace(name, option)
-        return complain(f"{sentence}{''.join(f' ({note})' for note in getattr(error, '__notes__', ()))}")
-    return 0
+
+    def run() -> None:
+        arguments = _parsed(sys.argv[1:] if argv is None else list(argv))
+        arguments.run(arguments)
+
+    return exit_code(run)
 
 
 def _parsed(words: list[str]) -> argparse.Namespace:

@@ -14,84 +14,19 @@ Out: ``Detection``: the shape, its points, how closely they lie to it, and how c
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arguments import as_points, as_positive
-from .certainty import Certainty, certainty
-from .circles import straightened
-from .evidence import Candidate, seen_shares
-from .explain import candidates
-from .scatter import LEAST_SPREAD, SIGMAS, noise_of
-from .shapes import Circle, Kind, Shape
-
-if TYPE_CHECKING:
-    from scipy.spatial import cKDTree
+from .robust.candidates import candidates
+from .robust.choice import Choice
+from .robust.deviations import Certainty
+from .robust.evidence import seen_shares
+from .robust.scatter import LEAST_SPREAD
+from .shapes import Kind, Shape
 
 Floats = NDArray[np.float64]
-
-NEIGHBOURS = 10  # enough for a line with its spread, few enough for a curve to be straight
-ENOUGH_PLACES = 250  # they tell whether there is any noise
-
-
-@dataclass(frozen=True, eq=False)
-class Choice:
-    """How a shape was chosen for the points of a cluster: it knows how clear the choice was.
-
-    Parameters
-    ----------
-    points : array, shape (N, 2)
-        All points of the cluster, metres.
-    ranked : list of Candidate
-        The explanations that were fitted, the best first.
-    spread : float
-        Standard deviation of the points from the outline, metres.
-    seed : int
-        Seed for the RANSAC stages; None for another one each time.
-    soft : bool
-        Whether points were shared between sides.
-    at_a_glance : bool
-        Whether the best explanation was beyond doubt, and its rivals were not fitted.
-    """
-
-    points: Floats
-    ranked: list[Candidate]
-    spread: float
-    seed: int | None = None
-    soft: bool = True
-    at_a_glance: bool = False
-
-    @cached_property
-    def distance(self) -> Floats:
-        """Signed distances of the points from the chosen shape, shape (N,), metres; infinite without a shape."""
-        shape = self.ranked[0].shape if self.ranked else None
-        return np.full(len(self.points), np.inf) if shape is None else shape.signed_distance(self.points)
-
-    @cached_property
-    def on_it(self) -> NDArray[np.bool_]:
-        """Which points lie on the chosen shape, shape (N,)."""
-        return np.abs(self.distance) <= SIGMAS * self.spread
-
-    @cached_property
-    def sure(self) -> Certainty:
-        """How sure the numbers of the chosen shape are; nothing without a shape."""
-        best = self.ranked[0] if self.ranked else None
-        if best is None or best.figure is None:
-            return Certainty((), ())
-        points = self.points[self.on_it]
-        middle = points.mean(axis=0)
-        return certainty(best.figure.moved(-middle), points - middle, self.spread, square=best.square)
-
-    @cached_property
-    def margin(self) -> float:
-        """How much more the best of another kind costs; rivals that were not fitted are fitted when this is asked."""
-        best, rivals = self.ranked[0], self.ranked[1:]
-        if self.at_a_glance:
-            rivals = candidates(self.points, self.spread, soft=self.soft, rng=self.seed)
-        return next((other.cost for other in rivals if other.kind != best.kind), float("inf")) - best.cost
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,51 +143,10 @@ def measure_shape(
 
 def as_detection(choice: Choice) -> Detection | None:
     """Return the best candidate with those of the points that lie on it; None when it is no shape."""
-    best = choice.ranked[0] if choice.ranked else None
-    shape = None if best is None else best.shape
-    if best is None or shape is None:
+    if choice.shape is None:
         return None
     points, rms = choice.points[choice.on_it], _rms(choice.distance[choice.on_it])
-    if isinstance(shape, Circle):
-        shape = straightened(shape, points, noise_of(choice.spread), best.seen[0])
-    return Detection(shape, points, rms, seen=best.seen, sure=choice, choice=choice)
-
-
-def spread_of(points: ArrayLike) -> float:
-    """Return the standard deviation of points from the outlines that they lie on, before any is known, metres.
-
-    Each point's neighbours lie on a piece of outline that is nearly straight: what they scatter across it is
-    the spread, and the median over all points does not mind corners and strays. Where a look at some hundred places
-    tells that there is no noise, that is enough.
-
-    Notes
-    -----
-    Too low when the spread is larger than the distance between neighbours: by a quarter to a third at 10 mm.
-
-    Examples
-    --------
-    >>> spread_of([]) == LEAST_SPREAD
-    True
-    """
-    from scipy.spatial import cKDTree
-
-    points = as_points(points)
-    if len(points) < NEIGHBOURS:
-        return LEAST_SPREAD
-    tree, every = cKDTree(points), -(-len(points) // ENOUGH_PLACES)
-    at_some_places = _spread_at(points[::every], points, tree)
-    return at_some_places if every == 1 or at_some_places == LEAST_SPREAD else _spread_at(points, points, tree)
-
-
-def _spread_at(places: Floats, points: Floats, tree: cKDTree) -> float:
-    """Return the spread, judged by what the points next to some places scatter, shape (M, 2); a tree has them all."""
-    near = tree.query(places, NEIGHBOURS)[1]  # (M, NEIGHBOURS)
-    x, y = points[:, 0][near], points[:, 1][near]
-    x, y = x - x.mean(axis=1, keepdims=True), y - y.mean(axis=1, keepdims=True)
-    xx, yy, xy = (x * x).sum(axis=1), (y * y).sum(axis=1), (x * y).sum(axis=1)
-    across = (xx + yy - np.hypot(xx - yy, 2 * xy)) / 2  # the smaller eigenvalue of the scatter matrix
-    variance = np.maximum(across, 0.0) / (NEIGHBOURS - 2)  # two numbers fix a line
-    return max(LEAST_SPREAD, float(np.sqrt(np.median(variance))))
+    return Detection(choice.shape, points, rms, seen=choice.ranked[0].seen, sure=choice, choice=choice)
 
 
 def detection(shape: Shape, points: Floats, reach: float) -> Detection:

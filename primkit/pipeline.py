@@ -26,10 +26,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from .arguments import as_count, as_points, as_positive, as_rng, check_type
 from .lines import LINE, find_lines
-from .measure import Detection, detection, spread_of
+from .measure import Detection, as_detection, detection
 from .paper import measure_as_published
-from .regroup import Group, explained, grown, regrouped
-from .scatter import LEAST_SPREAD, SIGMAS, spread_across, spread_from_median
+from .robust.regroup import Group, explained, grown, regrouped
+from .robust.scatter import LEAST_SPREAD, SIGMAS, spread_across, spread_from_median, spread_of
 from .segmentation import Grouping, check_count, segment
 from .steps import Steps
 
@@ -201,11 +201,10 @@ def _jointly(
         groups, margins = regrouped(groups, spread, n_shapes, explain=partial(explain, spread=spread))
     memory.clear()  # what was not used now will not come again: a map only grows
     memory.update(used)
-    found = [
-        steps.remeasured(replace(group.detection, count_margin=margin), SIGMAS * spread)
-        for group, margin in zip(groups, margins, strict=True)
-        if group.detection is not None
-    ]
+    found = []
+    for group, margin in zip(groups, margins, strict=True):
+        if (one := as_detection(group.choice)) is not None:
+            found.append(steps.remeasured(replace(one, count_margin=margin), SIGMAS * spread))
     return [one for one in found if one is not None]
 
 

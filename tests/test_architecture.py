@@ -19,62 +19,21 @@ PACKAGE = ROOT / "primkit"
 # The story: a room (a module, or a folder of them) imports only rooms above it. The table of contents, __init__, loads
 # rooms on first use; who imports it from inside could reach everything, so only the command line may.
 ORDER = (
-    *(
-        "arguments",
-        "shapes",
-        "world",
-        "robot",
-        "raycast",
-        "lidar",
-        "personal",
-        "grid",
-        "changes",
-        "linking",
-        "segmentation",
-        "ransac",
-        "lines",
-    ),
-    *(
-        "circles",
-        "outlines",
-        "scatter",
-        "pieces",
-        "refine",
-        "evidence",
-        "guess",
-        "explain",
-        "glance",
-        "certainty",
-        "measure",
-        "regroup",
-        "paper",
-        "steps",
-        "pipeline",
-        "explorer",
-        "evaluation",
-    ),
-    *(
-        "formats",
-        "study",
-        "plots",
-        "bench",
-        "widgets",
-        "checks",
-        "grading",
-        "teaching",
-        "__init__",
-        "commands",
-        "__main__",
-    ),
+    "arguments",
+    *("shapes", "world", "robot", "raycast", "lidar", "grid"),
+    *("segmentation", "ransac", "lines", "circles"),
+    *("robust", "measure", "paper", "steps", "pipeline", "evaluation"),
+    *("formats", "driving", "study", "plots", "widgets", "scene", "checks", "course"),
+    *("__init__", "commands", "__main__"),
 )
 
-# Heavy libraries, and the one room that may import each. (The benchmarks call the paper's chain of libraries itself.)
+# Heavy libraries, and the one room that may import each.
 ONLY_USER = {
     "matplotlib": ("plots",),
     "mpl_toolkits": ("plots",),
-    "ipywidgets": ("widgets",),
-    "anywidget": ("widgets",),
-    "sklearn": ("segmentation", "bench"),
+    "ipywidgets": ("widgets", "scene"),
+    "anywidget": ("scene",),
+    "sklearn": ("segmentation",),
 }
 
 # What numpy.random offers beside the functions of its global generator.

@@ -21,8 +21,8 @@ import numpy as np
 import pytest
 
 import primkit as pk
-from primkit.grading import personal_truth
-from primkit.personal import personal_scans
+from primkit.course.grading import personal_truth
+from primkit.course.personal import personal_scans
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.append(str(ROOT / "notebooks" / "assignments"))  # the teacher's package `grader` is not part of primkit

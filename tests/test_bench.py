@@ -1,4 +1,4 @@
-"""primkit bench: it takes turns, says what it found, names absent peers, writes what it prints. No time is judged."""
+"""Benchmarks: they take turns, say what they found, name absent peers, write what they print. No time is judged."""
 
 import csv
 import io
@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 
 import primkit as pk
-from primkit.__main__ import main
-from primkit.bench import casters, clock, command, driving, finding, machine, processes, scanning
-from primkit.bench.clock import Spread, in_turns
-from primkit.bench.effort import FULL, QUICK
-from primkit.bench.loops import LOOPS
-from primkit.bench.results import CSV_HEADER, Result, Row, results_as_csv
-from primkit.plots.timing import TOOLS, bench_figure, plot_bench
+from tests.benchmarks.__main__ import main
+from tests.benchmarks.bench import casters, clock, command, driving, finding, machine, processes, scanning
+from tests.benchmarks.bench.clock import Spread, in_turns
+from tests.benchmarks.bench.effort import FULL, QUICK
+from tests.benchmarks.bench.loops import LOOPS
+from tests.benchmarks.bench.results import CSV_HEADER, Result, Row, results_as_csv
+from tests.benchmarks.bench.timing import TOOLS, bench_figure, plot_bench
 from tests.helpers import exactly
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -265,12 +265,12 @@ def test_study_finds_the_same_on_two_processes():
 
 @pytest.fixture
 def tiny(monkeypatch):
-    monkeypatch.setattr("primkit.bench.effort.QUICK", TINY)
+    monkeypatch.setattr("tests.benchmarks.bench.effort.QUICK", TINY)
 
 
 @pytest.mark.usefixtures("tiny", "without_peers")
 def test_the_command_prints_tables_and_writes_them(tmp_path, capsys):
-    assert main(["bench", "kernels", "sizes", "--quick", "--out", str(tmp_path / "bench")]) == 0
+    assert main(["kernels", "sizes", "--quick", "--out", str(tmp_path / "bench")]) == 0
     out, err = capsys.readouterr()
     assert err == ""
     assert out.index("Machine") < out.index("One line, one circle") < out.index("Larger boards") < out.index("Wrote")
@@ -282,14 +282,14 @@ def test_the_command_prints_tables_and_writes_them(tmp_path, capsys):
 @pytest.mark.usefixtures("tiny", "without_peers")
 def test_without_a_folder_nothing_is_written(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert main(["bench", "kernels", "--quick"]) == 0
+    assert main(["kernels", "--quick"]) == 0
     assert "Wrote" not in capsys.readouterr().out
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.usefixtures("tiny", "without_peers")
 def test_without_sizes_there_is_no_figure(tmp_path, capsys):
-    assert main(["bench", "shapes", "scan", "shapes", "--quick", "--out", str(tmp_path)]) == 0
+    assert main(["shapes", "scan", "shapes", "--quick", "--out", str(tmp_path)]) == 0
     assert capsys.readouterr().out.count("Finding all shapes") == 1
     assert [path.name for path in tmp_path.iterdir()] == ["bench.csv"]
 
@@ -308,12 +308,12 @@ def test_all_are_run_when_none_is_named(monkeypatch):
 
 def test_help_answers_at_once_and_fits_the_screen(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
-    assert main(["bench", "--help"]) == 0
+    assert main(["--help"]) == 0
     out = capsys.readouterr().out
     assert out.isascii()
     assert max(map(len, out.splitlines())) <= 88
     code = (
-        "import sys; from primkit.__main__ import main; main(['bench', '--help'])\n"
+        "import sys; from tests.benchmarks.__main__ import main; main(['--help'])\n"
         "print([name for name in ('numpy', 'scipy', 'sklearn', 'matplotlib', 'joblib') if name in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True)
@@ -333,8 +333,8 @@ NAMES = "scan, sizes, memory, shapes, kernels, live, import, study"
     ids=["name", "option", "seed"],
 )
 def test_refusals_are_one_sentence(words, sentence, capsys):
-    assert main(["bench", *words.split()]) == 2
-    assert capsys.readouterr().err == f"primkit bench: {sentence} (see primkit bench --help)\n"
+    assert main([*words.split()]) == 2
+    assert capsys.readouterr().err == f"benchmarks: {sentence} (see benchmarks --help)\n"
 
 
 # --- the figure ---------------------------------------------------------------------------------------------

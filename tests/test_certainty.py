@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import primkit as pk
-from primkit.certainty import certainty, sides_seen
 from primkit.measure import measure_shape
-from primkit.scatter import CELL_STD, spread_across
+from primkit.robust.deviations import certainty, sides_seen
+from primkit.robust.scatter import CELL_STD, spread_across
 from tests.test_outlines import outline_of
 
 TRIANGLE = pk.Polygon([(-0.08, -0.05), (0.08, -0.05), (0.0, 0.09)])

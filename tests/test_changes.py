@@ -5,7 +5,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import primkit as pk
-from primkit.changes import BEFORE_A_HIT, ENOUGH, MovingGrid
+from primkit.driving.moving_grid import BEFORE_A_HIT, ENOUGH, MovingGrid
 from primkit.lidar import Scans
 from primkit.plots import plot_change
 from primkit.robot import BODY, clearance

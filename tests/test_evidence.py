@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import primkit as pk
-from primkit.evidence import UNSEEN_COST, _cost, _length_cost, joint_cost, judged, judged_wall, seen_shares
-from primkit.explain import candidates
-from primkit.scatter import LEAST_SPREAD, NOWHERE, spread_across
+from primkit.robust.candidates import candidates
+from primkit.robust.evidence import UNSEEN_COST, _cost, _length_cost, joint_cost, judged, judged_wall, seen_shares
+from primkit.robust.scatter import LEAST_SPREAD, NOWHERE, spread_across
 from tests.test_outlines import outline_of
 
 SQUARE = pk.Polygon([(-0.05, -0.05), (0.05, -0.05), (0.05, 0.05), (-0.05, 0.05)])

@@ -7,10 +7,10 @@ import pytest
 from matplotlib.figure import Figure
 
 import primkit as pk
-from primkit.explorer.search import Exploration
-from primkit.explorer.seen import LEAST_PLACE, SQUARE, SeenMap, joined, open_outlines
-from primkit.explorer.views import EVERY, next_view, shown_from
-from primkit.explorer.ways import ROOM, forward, turning, ways_from, wheels_along
+from primkit.driving.explore import Exploration
+from primkit.driving.next_views import EVERY, next_view, shown_from
+from primkit.driving.seen_map import LEAST_PLACE, SQUARE, SeenMap, joined, open_outlines
+from primkit.driving.ways import ROOM, forward, turning, ways_from, wheels_along
 from primkit.lidar import Scans
 from primkit.plots import plot_tour
 from primkit.robot import BODY, FASTEST, PERIOD, advance, clearance, drive, moved

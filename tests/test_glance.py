@@ -10,11 +10,14 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 import primkit as pk
-from primkit import explain, glance, measure, regroup
-from primkit.explain import candidates
-from primkit.glance import APART, BENT, at_a_glance, at_another_glance
-from primkit.pieces import best_cuts
-from primkit.scatter import LEAST_SPREAD, spread_across
+from primkit import measure
+from primkit.robust import candidates as explain
+from primkit.robust import first_fit as glance
+from primkit.robust import regroup
+from primkit.robust.candidates import candidates
+from primkit.robust.first_fit import APART, BENT, at_a_glance, at_another_glance
+from primkit.robust.scatter import LEAST_SPREAD, spread_across
+from primkit.robust.starts import best_cuts
 
 KINDS = ("circle", "triangle", "rectangle", "pentagon")
 THOROUGH = replace(pk.ROBUST, thorough=True)

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from primkit.checks import Check, Fault, judges
+from primkit.course.grading import MIME, OutOfTime, Part, Task, TimeLimit, personal_truth
+from primkit.course.grading.own_board import TRUTH
+from primkit.course.personal import personal_world
 from primkit.formats import save_world
-from primkit.grading import MIME, OutOfTime, Part, Task, TimeLimit, personal_truth
-from primkit.grading.truth import TRUTH
-from primkit.personal import personal_world
 
 posix = pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="Windows has no alarm")
 

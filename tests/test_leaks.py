@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from primkit.__main__ import main
-from primkit.teaching.leaks import MARKS, find_leaks, pieces, secrets_of
+from primkit.course.leaks import MARKS, find_leaks, pieces, secrets_of
 from tests.submissions import MARKERS, about, read, renamed, text
 
 ROOT = Path(__file__).resolve().parent.parent

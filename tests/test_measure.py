@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import primkit as pk
-from primkit.explain import candidates
-from primkit.measure import measure_shape, spread_of
-from primkit.scatter import LEAST_SPREAD
+from primkit.measure import measure_shape
+from primkit.robust.candidates import candidates
+from primkit.robust.scatter import LEAST_SPREAD, spread_of
 
 KINDS = ("circle", "triangle", "rectangle", "pentagon")
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import primkit as pk
-from primkit.outlines import Outlines, from_angle_order, joined
+from primkit.robust.outlines import Outlines, from_angle_order, joined
 
 
 def outline_of(polygon):

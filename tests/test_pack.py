@@ -302,8 +302,8 @@ def test_all_python_in_the_pages_can_be_read(name):
 
 
 def test_the_limits_that_are_stated_are_those_of_the_program():
-    from primkit.grading.task import SECONDS
-    from primkit.teaching.course import CONFIG
+    from primkit.course.course import CONFIG
+    from primkit.course.grading.task import SECONDS
 
     cell, tests, megabytes = (re.search(rf"\.{name} = (\d+)", CONFIG)[1] for name in LIMITS)
     page = PAGES["untrusted_code.md"]

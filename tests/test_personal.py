@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.distance import pdist
 
 import primkit as pk
-from primkit.personal import personal_scans
+from primkit.course.personal import personal_scans
 from tests.benchmarks.thousand_maps import accuracy, numbers
 
 SALT = "0123456789abcdef"

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import primkit as pk
-from primkit.measure import spread_of
 from primkit.pipeline import _explain_all
-from primkit.regroup import explained
+from primkit.robust.regroup import explained
+from primkit.robust.scatter import spread_of
 
 
 def points_of(world, rng=0, **sensor):

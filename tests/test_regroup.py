@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import primkit as pk
-from primkit import regroup
-from primkit.regroup import cost_of, explained
-from primkit.scatter import LEAST_SPREAD
+from primkit.robust import regroup
+from primkit.robust.regroup import cost_of, explained
+from primkit.robust.scatter import LEAST_SPREAD
 
 RECTANGLE = pk.Polygon([(-0.1, -0.04), (0.1, -0.04), (0.1, 0.04), (-0.1, 0.04)])
 CIRCLE = pk.Circle((0.2, 0.0), 0.05)

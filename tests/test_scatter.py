@@ -8,7 +8,7 @@ from scipy.integrate import quad
 from scipy.stats import norm
 
 import primkit as pk
-from primkit.scatter import LEAST_SPREAD, scatter, spread_across, spread_from_median
+from primkit.robust.scatter import LEAST_SPREAD, scatter, spread_across, spread_from_median
 from primkit.study.oracle import told_points
 
 SPREADS = st.floats(LEAST_SPREAD, 0.02)

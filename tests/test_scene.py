@@ -11,17 +11,17 @@ import numpy as np
 import pytest
 
 import primkit as pk
-from primkit.certainty import Certainty
-from primkit.changes import MovingGrid
+from primkit.driving.moving_grid import MovingGrid
 from primkit.measure import Detection
 from primkit.robot import AXLE, FASTEST, WHEEL, clearance
-from primkit.widgets.driving import DriveState
-from primkit.widgets.finder import MOST, Finder, beside, thinned
-from primkit.widgets.keys import HELD, STANDING, wheels_for
-from primkit.widgets.moving import NEAREST, left_within, with_one_moved
-from primkit.widgets.replay import Film
-from primkit.widgets.scene import Scene
-from primkit.widgets.sketch import drawn
+from primkit.robust.deviations import Certainty
+from primkit.scene.finder import MOST, Finder, beside, thinned
+from primkit.scene.keys import HELD, STANDING, wheels_for
+from primkit.scene.moved_shape import NEAREST, left_within, with_one_moved
+from primkit.scene.page import drawn
+from primkit.scene.replay import Film
+from primkit.scene.scene import Scene
+from primkit.scene.state import DriveState
 
 ROOT = Path(__file__).resolve().parent.parent
 MOST_MEMORY = 1.06  # times what the first half minute took
@@ -167,9 +167,9 @@ LONG_DRIVE = """
 import gc, resource, sys, time
 import numpy as np
 import primkit as pk
-from primkit.widgets.driving import DriveState
-from primkit.widgets.finder import MOST, Finder, beside, thinned
-from primkit.widgets.keys import wheels_for
+from primkit.scene.state import DriveState
+from primkit.scene.finder import MOST, Finder, beside, thinned
+from primkit.scene.keys import wheels_for
 from tests.test_scene import wandering
 
 noise, counts = float(sys.argv[1]), [int(word) for word in sys.argv[2:]]
@@ -300,7 +300,7 @@ def test_one_look_at_a_time():
 def test_of_very_many_cells_a_look_takes_a_part_and_the_last_look_all(world, monkeypatch):
     """So that neither its time nor its memory grows with the drive."""
     looked_at = []
-    monkeypatch.setattr("primkit.widgets.finder.find_shapes", lambda points, **_: looked_at.append(points) or [])
+    monkeypatch.setattr("primkit.scene.finder.find_shapes", lambda points, **_: looked_at.append(points) or [])
     state, rng = DriveState(world), np.random.default_rng(0)
     for _ in range(8):
         state.grid.add(rng.uniform(-0.4, 0.4, (2000, 2)))
@@ -378,7 +378,7 @@ def test_who_drives_hears_of_a_look_that_failed_and_drives_on(scene, monkeypatch
     def broken(*_args, **_kwargs):
         raise ArithmeticError("lost count")
 
-    monkeypatch.setattr("primkit.widgets.finder.find_shapes", broken)
+    monkeypatch.setattr("primkit.scene.finder.find_shapes", broken)
     for _ in range(3):
         scene.answer({"do": "step", "held": ["forward"]})
     assert any("failed, the drive goes on: ArithmeticError: lost count" in (m.get("say") or "") for m, _ in scene.sent)

@@ -11,7 +11,8 @@ import pytest
 from scipy.stats import binomtest
 
 from primkit.__main__ import main
-from primkit.certainty import Certainty
+from primkit.driving import wander
+from primkit.driving.wander import CLEARANCE, MARGIN, STEP, TURNS
 from primkit.evaluation import evaluate
 from primkit.grid import Grid
 from primkit.lidar import Lidar, scan
@@ -19,6 +20,7 @@ from primkit.measure import Detection
 from primkit.pipeline import ROBUST
 from primkit.plots import plot_accuracy, save_figure
 from primkit.robot import teleport_poses
+from primkit.robust.deviations import Certainty
 from primkit.shapes import Circle, Polygon
 from primkit.study import (
     ORACLE,
@@ -41,15 +43,13 @@ from primkit.study import (
     run_partial,
     run_study,
     told_points,
-    wander,
 )
-from primkit.study.accuracy import level_lines
+from primkit.study.accuracy.drive_views import View, share_seen, unseen_sides, view_of
+from primkit.study.accuracy.partial import partial_line
+from primkit.study.accuracy.sweeps import PLAIN, Condition, Level, experiments, n_runs
+from primkit.study.accuracy.table import level_lines
 from primkit.study.estimate import Estimate, mean_of, pooled_share, ratio_of, share_of
 from primkit.study.oracle import NOBODY
-from primkit.study.partial import partial_line
-from primkit.study.sweeps import PLAIN, Condition, Level, experiments, n_runs
-from primkit.study.views import View, share_seen, unseen_sides, view_of
-from primkit.study.wander import CLEARANCE, MARGIN, STEP, TURNS
 from primkit.world import World, random_world
 from tests.helpers import exactly
 

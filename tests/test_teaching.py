@@ -17,13 +17,13 @@ import psutil
 import pytest
 
 from primkit.__main__ import main
+from primkit.course.checking import check
+from primkit.course.course import ASSIGNMENTS, Course, new_course
+from primkit.course.grading import MIME, personal_truth
+from primkit.course.handed_in import file_faults, tree_hash
+from primkit.course.personal import personal_scans, personal_world
+from primkit.course.running import nbgrader
 from primkit.formats import save_scans
-from primkit.grading import MIME, personal_truth
-from primkit.personal import personal_scans, personal_world
-from primkit.teaching.checking import check
-from primkit.teaching.course import ASSIGNMENTS, Course, new_course
-from primkit.teaching.handed_in import file_faults, tree_hash
-from primkit.teaching.running import nbgrader
 from tests.submissions import ProblemSet, about, answers_of, read, with_cell
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -247,7 +247,7 @@ maps.RADIUS.mark("radius", globals())
 GRADER = """\
 from primkit.checks import Check
 from primkit.checks.judges import number
-from primkit.grading import Part, Task, personal_truth
+from primkit.course.grading import Part, Task, personal_truth
 
 def _reference():
     return next(shape for shape in personal_truth().shapes if shape.kind == "circle").radius
@@ -355,7 +355,7 @@ TROUBLE = {
 
 @pytest.mark.skipif(os.name != "posix", reason="the memory limit is told about a second late on Windows")
 def test_whatever_a_cell_does_costs_itself_alone(tmp_path):
-    from primkit.teaching.executing import CarefulExecute
+    from primkit.course.executing import CarefulExecute
 
     folder = tmp_path / "handed in"
     folder.mkdir()
@@ -399,7 +399,7 @@ def test_whatever_a_cell_does_costs_itself_alone(tmp_path):
 
 def run(folder, sources, **settings):
     """Run cells as a submission; return their outputs, and what was noted."""
-    from primkit.teaching.executing import CarefulExecute
+    from primkit.course.executing import CarefulExecute
 
     folder.mkdir()
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(source) for source in sources])
@@ -412,12 +412,12 @@ def run(folder, sources, **settings):
 
 def test_a_missing_function_is_told_by_the_error_of_its_cell(tmp_path):
     mark = (
-        "from primkit.checks import Check, judges\nfrom primkit.grading import Part, Task\n"
+        "from primkit.checks import Check, judges\nfrom primkit.course.grading import Part, Task\n"
         "CHECK = Check('length', abs, lambda rng: [(1.0,)], judges.number('m'))\n"
         "Task('length', [Part('plain', 2, CHECK)]).mark('length', globals())"
     )
     cells = ["def length(v):\n    return (v", "x = 1\ninput()\ndef area(v): pass", mark]
-    cells.append("from primkit.grading.cells import failure\nprint(failure('area')[1])")
+    cells.append("from primkit.course.grading.failed_cells import failure\nprint(failure('area')[1])")
     outputs, _ = run(tmp_path / "x", cells)
     shown = next(output.data[MIME] for output in outputs[2] if MIME in output.get("data", {}))
     told = "there is no function length: its cell stops with SyntaxError in line 2: "
@@ -436,7 +436,7 @@ def test_a_cell_that_ends_the_kernel_only_when_it_runs_again(tmp_path):
 
 
 def test_memory_is_watched_where_the_system_does_not_refuse_it(tmp_path, monkeypatch):
-    monkeypatch.setattr("primkit.teaching.executing.PREPARE", "pass  # {0}")
+    monkeypatch.setattr("primkit.course.executing.PREPARE", "pass  # {0}")
     hog = "import time\nhog = b'1' * (400 * 2**20)\ntime.sleep(20)"
     outputs, noted = run(tmp_path / "x", [hog, "print('on')"], megabytes=300)
     assert noted == [("cell 1", "MemoryError")]
@@ -469,7 +469,7 @@ def test_what_a_cell_prints_is_cut(tmp_path):
 
 
 def test_a_hidden_test_without_its_number_has_no_points(tmp_path):
-    from primkit.teaching.executing import CarefulExecute
+    from primkit.course.executing import CarefulExecute
 
     def cell(source):
         flags = {"grade": True, "grade_id": "half-hidden", "points": 2}

@@ -15,7 +15,6 @@ The rooms, each of which imports only those before it:
 ``words.py``  reading options, and printing
 ``board.py``  ``primkit map`` and ``primkit make-map``
 ``many.py``   ``primkit study`` and ``primkit accuracy``
-``speed.py``  ``primkit bench``
 ``teach.py``  ``primkit teach`` and its own commands
 ============  ==========================================
 

@@ -11,7 +11,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from ..teaching.untrusted import WORDS
+from ..course.untrusted import WORDS
 from .words import LOOK, Parser, count, path, say
 
 TEXT = "run a course: release problem sets, grade them, see how the class did"
@@ -64,13 +64,13 @@ def teach(_arguments: argparse.Namespace) -> None:
 
 
 def _course(arguments: argparse.Namespace) -> Any:
-    from ..teaching.course import Course
+    from ..course.course import Course
 
     return Course(arguments.course or Path()).checked()
 
 
 def _new_course(arguments: argparse.Namespace) -> None:
-    from ..teaching.course import ASSIGNMENTS, new_course
+    from ..course.course import ASSIGNMENTS, new_course
 
     course = new_course(arguments.folder, arguments.assignments or ASSIGNMENTS)
     say(f"Made   {course.root}: problem sets {', '.join(course.sets())}")
@@ -79,8 +79,8 @@ def _new_course(arguments: argparse.Namespace) -> None:
 
 
 def _check(arguments: argparse.Namespace) -> None:
-    from ..teaching.checking import check
-    from ..teaching.course import Course
+    from ..course.checking import check
+    from ..course.course import Course
 
     findings = check(Course(arguments.course or Path()))
     for finding in findings:
@@ -92,14 +92,14 @@ def _check(arguments: argparse.Namespace) -> None:
 
 
 def _release(arguments: argparse.Namespace) -> None:
-    from ..teaching.releasing import release
+    from ..course.releasing import release
 
     course = _course(arguments)
     release(course, course.set(arguments.name), say=say)
 
 
 def _grade(arguments: argparse.Namespace) -> None:
-    from ..teaching.grading import grade
+    from ..course.grade import grade
 
     course = _course(arguments)
     name = course.set(arguments.name)
@@ -112,7 +112,7 @@ def _grade(arguments: argparse.Namespace) -> None:
 
 
 def _report(arguments: argparse.Namespace) -> None:
-    from ..teaching.reporting import report
+    from ..course.reporting import report
 
     course = _course(arguments)
     for line in report(course, course.set(arguments.name)):
@@ -120,8 +120,8 @@ def _report(arguments: argparse.Namespace) -> None:
 
 
 def _leaks(arguments: argparse.Namespace) -> None:
-    from ..teaching.course import ASSIGNMENTS, Course
-    from ..teaching.leaks import find_leaks, secrets_of
+    from ..course.course import ASSIGNMENTS, Course
+    from ..course.leaks import find_leaks, secrets_of
 
     folder = Course(arguments.course or Path()).root
     if not (folder / "source").is_dir() and arguments.paths:

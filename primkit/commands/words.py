@@ -10,6 +10,7 @@ Out: values; or one sentence that states the rule and the word, and the nearest 
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from difflib import get_close_matches
@@ -17,6 +18,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn
 
+# What the library's sentences call differently.
+OPTIONS = {'style="free"': "--style free"}
 LOOK: dict[str, Any] = {"formatter_class": argparse.RawDescriptionHelpFormatter, "allow_abbrev": False}
 
 
@@ -117,7 +120,31 @@ def say(text: str) -> None:
     print(text.encode(encoding, "backslashreplace").decode(encoding))
 
 
-def complain(sentence: str, code: int = 2) -> int:
-    """Print a sentence to stderr, and return the exit code."""
+def exit_code(run: Callable[[], None]) -> int:
+    """Run a command, and return its exit code: 0 done, 2 a sentence on stderr says what was wrong, 130 Ctrl-C."""
+    try:
+        try:
+            run()
+        finally:
+            sys.stdout.flush()  # that nobody reads on is noticed here, not while Python shuts down
+    except SystemExit as end:  # argparse's, after --help or a wrong value
+        return int(end.code or 0)
+    except BrokenPipeError:  # as in `primkit study | head`: nobody reads on, and nothing is wrong
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except KeyboardInterrupt as stop:
+        return _complain(str(stop) or "stopped by Ctrl-C", 130)
+    except OSError as error:
+        # Sentences from formats stand alone; the system's own come in parts.
+        return _complain(f"{error.filename}: {error.strerror}" if error.filename else str(error))
+    except ValueError as error:
+        sentence = str(error)
+        for name, option in OPTIONS.items():
+            sentence = sentence.replace(name, option)
+        return _complain(f"{sentence}{''.join(f' ({note})' for note in getattr(error, '__notes__', ()))}")
+    return 0
+
+
+def _complain(sentence: str, code: int = 2) -> int:
     print(f"primkit: {sentence}", file=sys.stderr)
     return code

@@ -19,7 +19,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ..study.accuracy import COARSE, FINE, TRUTHS, AccuracyLine, AccuracyTable
+from ..study.accuracy.table import COARSE, FINE, TRUTHS, AccuracyLine, AccuracyTable
 from ..study.estimate import Estimate
 from .look import BLACK, BLUE, GREEN, GREY, INK, ORANGE, PALE, PURPLE, VERMILION, check_type
 from .story import Picture, freeze, plain

@@ -21,8 +21,8 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from ..evaluation import Match, Report
-from ..evidence import GAP
 from ..measure import Detection
+from ..robust.evidence import GAP
 from ..shapes import Circle, Polygon, Shape
 from ..world import World
 from .labels import write_labels

@@ -18,7 +18,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
 from ..arguments import as_points
-from ..explorer import Exploration
+from ..driving import Exploration
 from ..world import World
 from .look import GREY, INK, ORANGE, as_axes, check_type, draw_areas, draw_board, draw_legend, marks, patch, set_title
 

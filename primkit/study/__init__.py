@@ -37,23 +37,23 @@ The rooms, each of which imports only those before it:
 Source: the paper's section 3.3, "Results".
 """
 
-from .accuracy import AccuracyLine, AccuracyTable, accuracy_as_csv, run_accuracy
+from ..driving.scripted import drives_on, make_scripted_drive, scripted_route
+from ..driving.wander import wander
+from .accuracy.partial import PartialLine, PartialTable, run_partial
+from .accuracy.sweeps import REMEDIES, SWEEPS, UNTUNED
+from .accuracy.table import AccuracyLine, AccuracyTable, accuracy_as_csv, run_accuracy
+from .accuracy.whole import accuracy_study
 from .cluster import on_cluster
 from .estimate import Estimate
 from .experiment import Experiment, Run, perform, run
 from .journal import JOURNAL, make_folder, n_rows
-from .manual import SeenLine, SeenTable, seen_table
 from .many import METHODS, maps_in, run_study
 from .oracle import ORACLE, Oracle, oracle_fit, told_points
-from .partial import PartialLine, PartialTable, run_partial
 from .published import PUBLISHED, rows_as_csv, tables, write_tables
 from .row import Row, Score
-from .scripted import drives_on, make_scripted_drive, scripted_route
-from .seen import share_seen, shares_seen
-from .sweeps import REMEDIES, SWEEPS, UNTUNED
+from .seen_shares import share_seen, shares_seen
+from .seen_table import SeenLine, SeenTable, seen_table
 from .table import Line, Table
-from .together import accuracy_study
-from .wander import wander
 
 __all__ = [
     "run_study",

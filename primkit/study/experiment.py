@@ -44,7 +44,7 @@ from ..shapes import Circle, Kind
 from ..world import World
 from .oracle import Oracle, oracle_fit, told_points
 from .row import Row, Score
-from .seen import shares_seen
+from .seen_shares import shares_seen
 
 # Another version of these may draw or compute other numbers.
 LIBRARIES = ("numpy", "scipy", "scikit-learn", "shapely")

@@ -1,6 +1,6 @@
 """Widgets: pictures that change while you move a slider; one for each lesson.
 
-Beside the story, and the only user of ipywidgets and anywidget. A lesson shows its slider with ``pk.widgets.rays()``,
+Beside the story. A lesson shows its slider with ``pk.widgets.rays()``,
 and below it the same picture for a few named settings, which needs no Python behind it: ``pk.widgets.rays().twin()``.
 
 In:  a lesson's values: beams, noise, a seed.
@@ -24,14 +24,6 @@ The rooms, each of which imports only those before it:
 ``naming.py``    lesson 06: candidates, what each costs, the chosen one
 ``scoring.py``   lesson 07: tolerance, weights, one-sided or two-sided
 ``wheels.py``    lesson 08: the arc that two wheels make, and straight pieces
-``keys.py``      what the keys that drive the robot mean for its wheels
-``finder.py``    looks for shapes beside the drive
-``moving.py``    a shape that is moved meanwhile
-``runs.py``      by hand, from way-points, explored: what came of it
-``driving.py``   the robot under somebody's hand, and what it knows so far
-``sketch.py``    what the page needs to know to draw it
-``scene.py``     ``drive_scene``: drive it with the keys, and watch its map grow
-``replay.py``    ``replay``: a recorded drive as a film
 ===============  ==================================================
 """
 
@@ -43,8 +35,6 @@ from .edges import edges
 from .groups import groups
 from .naming import naming
 from .rays import rays
-from .replay import Replay, replay
-from .scene import Scene, drive_scene
 from .scoring import scoring
 from .slider import Choice, Explorer, Slider, explore
 from .wheels import wheels
@@ -62,10 +52,6 @@ __all__ = [
     "naming",
     "scoring",
     "wheels",
-    "drive_scene",
-    "Scene",
-    "replay",
-    "Replay",
     "explore",
     "Explorer",
     "Slider",

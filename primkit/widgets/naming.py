@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..circles import fit_circle
-from ..evidence import GAP, seen_shares
 from ..grid import Grid
 from ..lidar import Lidar, scan
-from ..outlines import Outlines, from_angle_order, joined
 from ..plots.look import BLUE, GREY, INK, KIND_COLORS, ORANGE, PALE, VERMILION
-from ..refine import refine_hard
-from ..scatter import spread_across
+from ..robust.evidence import GAP, seen_shares
+from ..robust.outlines import Outlines, from_angle_order, joined
+from ..robust.refine import refine_hard
+from ..robust.scatter import spread_across
 from ..shapes import Circle, Kind, Polygon, Shape
 from ..world import PENTAGON, World
 from .drawing import Frame, picture

@@ -1,7 +1,7 @@
 """Both sides of each benchmark do the same work: the same ranges, the same lines, the same circles.
 
-Nothing is timed here, because a busy machine would break it: ``primkit bench`` measures. A peer that is not installed
-is skipped, and the reason says so.
+Nothing is timed here, because a busy machine would break it: ``python -m tests.benchmarks`` measures. A peer that is
+not installed is skipped, and the reason says so.
 """
 
 import matplotlib
@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import primkit as pk
-from primkit.bench import casters, others
-from primkit.bench.finding import clusters, points_of
-from primkit.bench.loops import LOOPS
-from primkit.bench.machine import HOW_TO, version_of
-from primkit.bench.scanning import EQUAL, four_shape_maps, poses_outside, primkit_caster
 from primkit.evaluation import evaluate
+from tests.benchmarks.bench import casters, others
+from tests.benchmarks.bench.finding import clusters, points_of
+from tests.benchmarks.bench.loops import LOOPS
+from tests.benchmarks.bench.machine import HOW_TO, version_of
+from tests.benchmarks.bench.scanning import EQUAL, four_shape_maps, poses_outside, primkit_caster
 
 LIDAR = pk.Lidar()
 MAPS = four_shape_maps()

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial.distance import pdist
 
 import primkit as pk
-from primkit.personal import personal_scans
+from primkit.course.personal import personal_scans
 
 SALT = "the salt of this measurement"
 

@@ -1,7 +1,7 @@
 """Grader: the hidden tests of the problem sets. On the teacher's side only, never in what students receive.
 
 In:  a student's function, by its name, from the notebook that is marked.
-Out: points and a table, from ``primkit.grading``.
+Out: points and a table, from ``primkit.course.grading``.
 
 The last cell of each task says ``from grader import rays_and_grid`` and ``rays_and_grid.RAY_ARC.mark("ray_arc",
 globals())``. A problem set is a folder with one room for each of its functions. Each room has a reference, the cases

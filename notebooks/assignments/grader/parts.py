@@ -1,7 +1,7 @@
 """Parts: a task from its parts, and judges that only the problem sets need.
 
 In:  a reference, a judge, usual faults, and for each part its words, its points and its cases.
-Out: a ``primkit.grading.Task``, which marks a student's function.
+Out: a ``primkit.course.grading.Task``, which marks a student's function.
 
 All parts of a task share reference, judge and faults; they differ in their cases. So each part asks one question. A
 wrong answer loses every part in which it shows: a slip in a step that all cases need shows in all of them.
@@ -16,7 +16,7 @@ import numpy as np
 
 from primkit.checks import Check, Fault
 from primkit.checks.judges import Judge, points_in_any_order, shown
-from primkit.grading import Part, Task
+from primkit.course.grading import Part, Task
 
 Cases = Callable[[np.random.Generator], Iterable[tuple[Any, ...]]]
 

@@ -22,10 +22,10 @@ import primkit as pk
 from primkit.checks import Check
 from primkit.checks.answer import Case
 from primkit.checks.judges import Judge
+from primkit.course.grading import Mark, OutOfTime, Part, Task, personal_truth
+from primkit.course.grading.mark import Row
+from primkit.course.personal import personal_scans
 from primkit.evaluation import Report
-from primkit.grading import Mark, OutOfTime, Part, Task, personal_truth
-from primkit.grading.table import Row
-from primkit.personal import personal_scans
 from primkit.shapes import KINDS
 
 from ..parts import Fault, shown

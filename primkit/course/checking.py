@@ -1,0 +1,177 @@
+"""Checking: whether all is there that a course needs, and how each fault is mended.
+
+In:  a course folder.
+Out: a ``Finding`` for each thing that was looked at: fine, or what is wrong and what to do.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import sqlite3
+import sys
+import sysconfig
+import tempfile
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+
+from .course import CONFIG, COPIED, Course
+from .handed_in import strangers
+
+OLDEST = (3, 11)
+ENVIRONMENT = Path(__file__).resolve().parents[2] / "environment.txt"  # in a clone
+NEEDED = ("nbgrader", "jupyterlab", "ipykernel", "nbconvert", "psutil")
+PIN = re.compile(r"^([\w.-]+)(?:\[[\w,]+\])?==([\w.]+)")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that was looked at: what, how it is, and what to do when it is wrong."""
+
+    what: str
+    found: str
+    mend: str = ""
+
+    @property
+    def fine(self) -> bool:
+        """Whether there is nothing to do."""
+        return not self.mend
+
+    def __str__(self) -> str:
+        return f"{'ok   ' if self.fine else 'FAULT'}  {self.what}: {self.found}" + (
+            "" if self.fine else f"\n       -> {self.mend}"
+        )
+
+
+def check(course: Course, environment: Path = ENVIRONMENT) -> list[Finding]:
+    """Look at everything that a course needs."""
+    looks: tuple[Callable[[], Iterator[Finding]], ...] = (
+        _python,
+        lambda: _packages(environment),
+        _commands,
+        _kernel,
+        lambda: _folder(course),
+        lambda: _sources(course),
+        lambda: _secrets(course),
+        lambda: _gradebook(course),
+    )
+    return [finding for look in looks for finding in look()]
+
+
+def _python() -> Iterator[Finding]:
+    version = ".".join(map(str, sys.version_info[:3]))
+    least = ".".join(map(str, OLDEST))
+    mend = f"install Python {least} or newer, and make the environment again with it"
+    yield Finding("Python", version, "" if sys.version_info >= OLDEST else mend)
+
+
+def _packages(environment: Path) -> Iterator[Finding]:
+    """Compare what is installed with what environment.txt says, or only look whether it is there."""
+    if environment.is_file():
+        lines = environment.read_text(encoding="utf-8").splitlines()
+        pins = {match[1]: match[2] for line in lines if (match := PIN.match(line))}
+        mend = f"{Path(sys.executable)} -m pip install -r {environment}"
+    else:
+        pins, mend = dict.fromkeys(NEEDED, ""), f'{Path(sys.executable)} -m pip install "primkit[teach]"'
+    wrong = 0
+    for name, wanted in pins.items():
+        try:
+            found = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            found = "missing"
+        if found == "missing" or (wanted and found != wanted):
+            wrong += 1
+            yield Finding(name, f"{found}, needs {wanted}" if wanted else found, mend)
+    if not wrong:
+        yield Finding("packages", f"all {len(pins)} as in {environment.name}" if environment.is_file() else "all there")
+
+
+def _commands() -> Iterator[Finding]:
+    """Look for alembic: nbgrader calls it by its name to make a gradebook."""
+    scripts = Path(sysconfig.get_path("scripts"))
+    found = next((scripts / name for name in ("alembic", "alembic.exe") if (scripts / name).exists()), None)
+    mend = f"{Path(sys.executable)} -m pip install --force-reinstall alembic"
+    yield Finding("alembic", str(found or f"not in {scripts}"), "" if found else mend)
+
+
+def _kernel() -> Iterator[Finding]:
+    mend = f"{Path(sys.executable)} -m ipykernel install --sys-prefix"
+    try:
+        from jupyter_client.kernelspec import KernelSpecManager
+
+        words = KernelSpecManager().get_kernel_spec("python3").argv
+    except Exception as error:
+        yield Finding("kernel python3", f"not found ({type(error).__name__})", mend)
+        return
+    program = Path(words[0])
+    own = not program.is_absolute() or program.parent == Path(sys.executable).parent
+    yield Finding(
+        "kernel python3", words[0] if own else f"{program} is another Python than this one", "" if own else mend
+    )
+
+
+def _folder(course: Course) -> Iterator[Finding]:
+    config = course.root / "nbgrader_config.py"
+    if not config.is_file():
+        yield Finding("course folder", f"{course.root} has no nbgrader_config.py", "primkit teach new-course DIR")
+        return
+    text = config.read_text(encoding="utf-8")
+    careful = "CarefulExecute" in text or "CarefulExecute" not in CONFIG
+    mend = "put primkit.course.executing.CarefulExecute into c.Autograde.autograde_preprocessors, as in a new course"
+    yield Finding(
+        "nbgrader_config.py", "ours" if careful else "runs submissions without limits", "" if careful else mend
+    )
+    try:
+        with tempfile.TemporaryFile(dir=course.root):
+            pass
+        yield Finding("course folder", f"{course.root} can be written")
+    except OSError as error:
+        yield Finding("course folder", f"{course.root}: {error.strerror}", "give yourself the right to write there")
+
+
+def _sources(course: Course) -> Iterator[Finding]:
+    for name in COPIED:
+        there = (course.root / name).is_dir()
+        mend = f"copy notebooks/assignments/{name} of the project's folder into {course.root}"
+        yield Finding(f"{name}/", "there" if there else "missing", "" if there else mend)
+    if (course.root / "source").is_dir():
+        sets = course.sets()
+        yield Finding("problem sets", ", ".join(sets) or "none", "" if sets else "copy them into source/")
+
+
+def _secrets(course: Course) -> Iterator[Finding]:
+    for what, look in (("salt.txt", course.salt), ("students.csv", course.students)):
+        try:
+            found = look()
+        except ValueError as error:
+            told, _, mend = str(error).partition(": ")
+            yield Finding(what, told, mend or "see the first line of a new course's file")
+            continue
+        yield Finding(what, f"{len(found)} students" if isinstance(found, list) else f"{len(found)} characters")
+        for name in course.sets() if what == "students.csv" else ():
+            for fault in strangers(course, name):
+                yield Finding(f"submitted/{fault.student}/{name}", *fault.says.split("? ", 1))
+    salt = course.root / "salt.txt"
+    if os.name == "posix" and salt.is_file() and salt.stat().st_mode & 0o077:
+        yield Finding("salt.txt", "others on this computer can read it", f"chmod 600 {salt}")
+
+
+def _gradebook(course: Course) -> Iterator[Finding]:
+    path = course.root / "gradebook.db"
+    if not path.exists():
+        yield Finding("gradebook.db", "not yet there: the first release makes it")
+        return
+    try:
+        with sqlite3.connect(f"file:{path.as_posix()}?mode=ro", uri=True) as base:
+            tables = {row[0] for row in base.execute("select name from sqlite_master where type = 'table'")}
+            sound = base.execute("pragma quick_check").fetchone()[0]
+    except sqlite3.Error as error:
+        yield Finding("gradebook.db", str(error), "put a copy from before back, or move it away and grade again")
+        return
+    if sound != "ok" or not {"assignment", "student", "grade"} <= tables:
+        mend = "put a copy from before back, or move it away, release and grade again: submitted/ holds all it needs"
+        yield Finding("gradebook.db", sound if sound != "ok" else "is no gradebook", mend)
+    else:
+        yield Finding("gradebook.db", "sound")

@@ -1,0 +1,214 @@
+"""Course: a folder in which nbgrader runs the problem sets, and what lies where in it.
+
+In:  an empty folder, and the project's ``notebooks/assignments``.
+Out: a ``Course``: ``source/`` and ``grader/`` (with solutions: for the teacher alone), ``nbgrader_config.py``, the list
+     of students, and the salt of the personal maps.
+
+What nbgrader and ``primkit teach`` make in it: ``release/`` (for the students), ``personal/`` (one folder for each of
+them), ``submitted/``, ``autograded/``, ``feedback/``, ``gradebook.db`` and ``reports/``.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+import secrets
+import shutil
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+
+from ..arguments import short
+from .personal import SALT_LETTERS
+
+# Where the assignments lie in a clone of the project; a wheel holds none.
+ASSIGNMENTS = Path(__file__).resolve().parents[2] / "notebooks" / "assignments"
+COPIED = ("source", "grader")  # solutions and hidden tests: neither is ever released
+SCANS = "my_scans.npz"  # a problem set that has this file is about a personal map
+SALT = "salt.txt"
+STUDENTS = "students.csv"
+COLUMNS = ("id", "first_name", "last_name", "email")  # what `nbgrader db student import` reads
+ID = re.compile(r"[\w@.-]+")  # anything else means something to nbgrader's search for files, or to the system
+
+# How a submission is put in order: nbgrader's own steps, and ours between them.
+STEPS = [
+    "nbgrader.preprocessors.ClearOutput",
+    "nbgrader.preprocessors.DeduplicateIds",
+    "primkit.course.sanitizing.WholeNotebook",
+    "nbgrader.preprocessors.OverwriteKernelspec",
+    "nbgrader.preprocessors.OverwriteCells",
+    "nbgrader.preprocessors.CheckCellMetadata",
+]
+CONFIG = f'''\
+"""nbgrader's settings for this course: read whenever nbgrader runs in this folder."""
+
+from pathlib import Path
+
+c = get_config()  # noqa: F821 - nbgrader's own
+course = str(Path(__file__).resolve().parent)
+c.CourseDirectory.root = course
+
+# Copied cells are the student's own; graded cells and locked code that were deleted are put back.
+c.OverwriteCells.add_missing_cells = True
+c.Autograde.sanitize_preprocessors = {STEPS}
+c.WholeNotebook.course = course
+
+# Submissions run with primkit's careful way to execute in the place of nbgrader's own.
+c.Autograde.autograde_preprocessors = [
+    "primkit.course.executing.CarefulExecute",
+    "nbgrader.preprocessors.IgnorePattern",
+    "nbgrader.preprocessors.LimitOutput",
+    "nbgrader.preprocessors.SaveAutoGrades",
+    "nbgrader.preprocessors.AssignLatePenalties",
+    "nbgrader.preprocessors.CheckCellMetadata",
+]
+c.CarefulExecute.course = course
+c.CarefulExecute.timeout = 60  # seconds for each cell
+c.CarefulExecute.tests_timeout = 180  # seconds for each hidden test; its parts have limits of their own
+c.CarefulExecute.megabytes = 4096  # of memory for each submission
+'''
+IGNORED = """\
+# Neither secrets nor students' work belong into a repository.
+salt.txt
+students.csv
+gradebook.db*
+release/
+personal/
+submitted/
+autograded/
+feedback/
+reports/
+.primkit/
+"""
+
+
+@dataclass(frozen=True)
+class Course:
+    """A course folder.
+
+    Parameters
+    ----------
+    root : str or path
+        The folder.
+    """
+
+    root: Path
+
+    def __init__(self, root: str | Path) -> None:
+        object.__setattr__(self, "root", Path(root).resolve())
+
+    def checked(self) -> Course:
+        """Return the course itself, or say in one sentence that this is none."""
+        if not (self.root / "nbgrader_config.py").is_file() or not (self.root / "source").is_dir():
+            raise ValueError(
+                f"{self.root} is no course folder: make one with `primkit teach new-course DIR`, and run the others "
+                "in it or with --course DIR"
+            )
+        return self
+
+    def sets(self) -> list[str]:
+        """Return the names of the problem sets."""
+        folders = (self.root / "source").glob("*")
+        return sorted(folder.name for folder in folders if any(folder.glob("*.ipynb")))
+
+    def set(self, name: str) -> str:
+        """Return the name of a problem set, or say in one sentence that there is none."""
+        known = self.sets()
+        if name in known:
+            return name
+        near = get_close_matches(name, known, n=1)
+        raise ValueError(
+            f"there is no problem set {name!r}"
+            + (f"; did you mean {near[0]!r}?" if near else f"; there are {', '.join(known) or 'none'}")
+        )
+
+    def salt(self) -> str:
+        """Return the secret behind the personal maps."""
+        path = self.root / SALT
+        if not path.is_file():
+            raise ValueError(
+                f"{SALT} is missing in {self.root}: put the old one back, for a new salt makes new maps for everyone"
+            )
+        salt = path.read_text(encoding="utf-8").strip()
+        if len(salt) < SALT_LETTERS:
+            raise ValueError(f"{SALT} must hold at least {SALT_LETTERS} characters, got {len(salt)}")
+        return salt
+
+    def students(self) -> list[str]:
+        """Return the ids of all students in the list."""
+        path = self.root / STUDENTS
+        if not path.is_file():
+            raise ValueError(f"{STUDENTS} is missing in {self.root}: a table with the columns {', '.join(COLUMNS)}")
+        with open(path, encoding="utf-8-sig", newline="") as file:
+            table = csv.DictReader(file)
+            if "id" not in (table.fieldnames or ()):
+                wrong = ",".join(table.fieldnames or ())
+                semicolons = " (saved with semicolons: choose CSV with commas)" if ";" in wrong else ""
+                raise ValueError(
+                    f"{STUDENTS} must begin with the line {','.join(COLUMNS)}, got {short(wrong)}{semicolons}"
+                )
+            lines = [(table.line_num, row["id"]) for row in table]
+        ids = [name for _, name in lines]
+        for line, name in lines:
+            if not name or not ID.fullmatch(name):
+                raise ValueError(
+                    f"{STUDENTS}: an id must be made of letters, digits and . _ - @ alone, "
+                    f"got {short(name)} in line {line}"
+                )
+        if twice := sorted({name for name in ids if ids.count(name) > 1}):
+            raise ValueError(f"{STUDENTS}: an id must stand there once, got twice: {', '.join(twice)}")
+        return ids
+
+    def notebooks(self, name: str) -> list[str]:
+        """Return the notebooks' names in a problem set, without their ending."""
+        return sorted(path.stem for path in (self.root / "source" / name).glob("*.ipynb"))
+
+    def personal(self, name: str) -> bool:
+        """Tell whether a problem set is about a personal map."""
+        return (self.root / "source" / name / SCANS).is_file()
+
+    def submitted(self, name: str) -> list[str]:
+        """Return who handed in a problem set."""
+        return sorted(path.parent.name for path in self.root.glob(f"submitted/*/{name}") if path.is_dir())
+
+    def reports(self, name: str) -> Path:
+        """Return the folder of what is said about a problem set; it is made."""
+        folder = self.root / "reports" / name
+        folder.mkdir(parents=True, exist_ok=True)
+        return folder
+
+
+def new_course(root: str | Path, assignments: str | Path = ASSIGNMENTS) -> Course:
+    """Make a course folder.
+
+    Parameters
+    ----------
+    root : str or path
+        A folder that does not exist yet, or is empty.
+    assignments : str or path
+        Where ``source/`` and ``grader/`` lie; in a clone of the project they are found by themselves.
+
+    Raises
+    ------
+    ValueError
+        If there is something in the folder, or no assignments are found.
+    """
+    course, assignments = Course(root), Path(assignments)
+    if not all((assignments / name).is_dir() for name in COPIED):
+        raise ValueError(
+            f"there are no assignments in {assignments}: an installed wheel holds none; download the project's folder "
+            "and install it with `pip install -e .`, or say with --assignments where source/ and grader/ lie"
+        )
+    if course.root.exists() and (not course.root.is_dir() or any(course.root.iterdir())):
+        raise ValueError(f"{course.root} must be a new folder or an empty one: nothing is ever written over a course")
+    course.root.mkdir(parents=True, exist_ok=True)
+    for name in COPIED:
+        ignore = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints", "*.pyc")
+        shutil.copytree(assignments / name, course.root / name, ignore=ignore)
+    (course.root / "nbgrader_config.py").write_text(CONFIG, encoding="utf-8")
+    (course.root / STUDENTS).write_text(",".join(COLUMNS) + "\n", encoding="utf-8")
+    (course.root / ".gitignore").write_text(IGNORED, encoding="utf-8")
+    salt = course.root / SALT
+    salt.touch(mode=0o600)
+    salt.write_text(secrets.token_hex(16) + "\n", encoding="utf-8")
+    return course

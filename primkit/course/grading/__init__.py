@@ -1,0 +1,35 @@
+"""Grading: points for a student's function, part by part; what the hidden tests of a problem set call.
+
+Beside the story. A ``Task`` is made of parts, and each part of a ``Check`` and its points. A part is right or it is
+not: its points are all or none. Whatever a part meets, an endless loop, an exception, a changed argument, costs that
+part alone. There are no solutions in here: those of the problem sets stay with the teacher.
+
+In:  the student's function, or its name and where it is looked up.
+Out: the points, and a table that says for each part what is off.
+
+>>> from primkit.checks import Check, judges
+>>> half = Check("half", lambda x: x / 2, lambda rng: [(1.0,), (3.0,)], judges.number("m"))
+>>> task = Task("half", [Part("halves lengths", 2, half)])
+>>> task.mark(lambda x: 0.5 * x)
+2.0
+>>> print(task.marked("half", {}))
+half: 0 of 2 points
+○ 0 of 2  halves lengths: there is no function half: run its cell, and keep its name.
+
+The rooms, each of which imports only those before it:
+
+============  ======================================================
+``limit.py``  a time limit, and what it can stop
+``cells.py``  why a function is missing
+``table.py``  ``Mark``: the points as text, as HTML, and for a report
+``task.py``   ``Part`` and ``Task``
+``truth.py``  the student's own board, while it is graded
+============  ======================================================
+"""
+
+from .limit import OutOfTime, TimeLimit
+from .mark import MIME, Mark, Row
+from .own_board import personal_truth
+from .task import Part, Task
+
+__all__ = ["Part", "Task", "personal_truth", "Mark", "Row", "MIME", "OutOfTime", "TimeLimit"]

@@ -1,0 +1,125 @@
+"""Table: the points of a task, part by part, as text, as HTML, and as data for the report on a class.
+
+In:  for each part its points and its check's answer.
+Out: a ``Mark``. A notebook shows the table; the data lie beside it under a type of their own, ``MIME``.
+
+>>> from primkit.checks import Answer
+>>> mark = Mark("half", (Row("halves lengths", 2, Answer("right", "all 2 cases.")),))
+>>> mark
+half: 2 of 2 points
+✓ 2 of 2  halves lengths
+>>> mark.data()["parts"][0]["verdict"]
+'right'
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+from ...checks.answer import COLORS, SIGNS, Answer
+
+MIME = "application/vnd.primkit.mark+json"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One part: what it asks for, its points, and what the check said."""
+
+    says: str
+    of: float
+    answer: Answer
+
+    @property
+    def points(self) -> float:
+        """All or none."""
+        return float(self.of) if self.answer.right else 0.0
+
+    @property
+    def off(self) -> str:
+        """What is off; empty when nothing is."""
+        return "" if self.answer.right else self.answer.says
+
+
+@dataclass(frozen=True)
+class Mark:
+    """The points of a task."""
+
+    task: str
+    rows: tuple[Row, ...]
+
+    @property
+    def points(self) -> float:
+        """What was reached."""
+        return float(sum(row.points for row in self.rows))
+
+    @property
+    def of(self) -> float:
+        """What could be reached."""
+        return float(sum(row.of for row in self.rows))
+
+    def data(self) -> dict[str, Any]:
+        """Return all of it as plain values, as the report on a class reads it."""
+        return {
+            "task": self.task,
+            "points": self.points,
+            "of": self.of,
+            "parts": [
+                {
+                    "says": row.says,
+                    "points": row.points,
+                    "of": float(row.of),
+                    "verdict": row.answer.verdict,
+                    "fault": row.answer.fault,
+                    "off": row.off,
+                }
+                for row in self.rows
+            ],
+        }
+
+    @property
+    def common(self) -> str:
+        """What is off in every part alike, to be said once; empty otherwise."""
+        said = {row.off for row in self.rows}
+        return said.pop() if len(said) == 1 and len(self.rows) > 1 else ""
+
+    @property
+    def _headline(self) -> str:
+        return f"{self.task}: {self.points:g} of {self.of:g} points"
+
+    def __repr__(self) -> str:
+        lines = [self._headline, *self.common.splitlines()]
+        for row in self.rows:
+            told = [] if self.common else row.off.splitlines()
+            off = "".join(f"\n    {line}" for line in told[1:])
+            first = f": {told[0]}" if told else ""
+            lines.append(f"{SIGNS[row.answer.verdict]} {row.points:g} of {row.of:g}  {row.says}{first}{off}")
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        head = "".join(f'<th scope="col" style="{LEFT}">{word}</th>' for word in ("points", "part", "what is off"))
+        once = f'<br><span style="font-weight:normal">{_lines(self.common)}</span>' if self.common else ""
+        return (
+            f'<table style="border-collapse:collapse;line-height:1.5"><caption style="{LEFT};font-weight:bold;'
+            f'color:inherit">{escape(self._headline)}{once}</caption><thead><tr>{head}</tr></thead>'
+            f"<tbody>{''.join(_html_row(row, told=bool(self.common)) for row in self.rows)}</tbody></table>"
+        )
+
+    def _repr_mimebundle_(self, **_wanted: Any) -> dict[str, Any]:
+        return {"text/plain": repr(self), "text/html": self._repr_html_(), MIME: self.data()}
+
+
+def _lines(text: str) -> str:
+    return escape(text).replace("\n", "<br>")
+
+
+LEFT = "text-align:left;vertical-align:top;padding:2px 12px 2px 0"
+
+
+def _html_row(row: Row, *, told: bool = False) -> str:
+    """Return a part's row; what is off is left out when it is told above the table."""
+    verdict = row.answer.verdict
+    sign = f'<b style="color:{COLORS[verdict]}">{SIGNS[verdict]}&nbsp;{row.points:g}&nbsp;of&nbsp;{row.of:g}</b>'
+    off = "" if row.answer.right else f"<i>{verdict}</i>" + ("" if told else f": {_lines(row.off)}")
+    return "<tr>" + "".join(f'<td style="{LEFT}">{cell}</td>' for cell in (sign, escape(row.says), off)) + "</tr>"

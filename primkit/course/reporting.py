@@ -1,0 +1,140 @@
+"""Reporting: the overview of a class as text, as tables for a spreadsheet, and as a figure.
+
+In:  an ``Overview``.
+Out: lines for the screen; ``overview.csv`` (tasks and parts), ``wrong.csv`` (each wrong answer), ``faults.csv`` (what a
+     teacher should look at), ``grades.csv`` (nbgrader's own export) and ``overview.png``.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from ..formats.files import write_atomically
+from ..plots.story import save_figure
+from ..plots.teaching import class_figure
+from .course import Course
+from .grade import Journal
+from .handed_in import listed
+from .handing_back import state, waiting
+from .overview import Line, Overview, overview
+from .running import nbgrader
+
+USUAL = 3  # wrong answers that are told for each part
+
+
+def report(course: Course, name: str) -> Iterator[str]:
+    """Write the reports on a problem set, and yield what is said about it."""
+    seen = overview(course, name)
+    folder = course.reports(name)
+    tables = {
+        "overview.csv": _overview_rows(seen),
+        "wrong.csv": [("student", "task", "part", "name", "what"), *seen.wrong],
+        "faults.csv": [
+            ("student", "cell", "name", "what"),
+            *((f.student, f.cell, f.name, f.says) for f in seen.faults),
+        ],
+    }
+    for file, rows in tables.items():
+        write_atomically(folder / file, _csv(rows))
+    parts = seen.parts()
+    figure = class_figure(
+        name,
+        seen.graded,
+        [(line.task, line.part, line.right, (_usual(line) or [("", 0)])[0]) for line in parts if not line.open],
+    )
+    save_figure(figure, folder / "overview.png")
+    exported = nbgrader(course, "export", f"--to={folder / 'grades.csv'}")
+    if exported.code == 0:
+        _with_states(course, folder / "grades.csv")
+    yield from _said(seen)
+    yield ""
+    yield f"Wrote  {', '.join([*tables, 'overview.png'])} in {folder}"
+    yield (
+        f"Wrote  {folder / 'grades.csv'}: nbgrader's export; its last column tells the zeros apart"
+        if exported.code == 0
+        else f"nbgrader's export failed: {exported.reason}"
+    )
+
+
+def _with_states(course: Course, path: Path) -> None:
+    """Add a last column to nbgrader's export: whether a 0 is for an answer, for none, or for a broken file."""
+    with open(path, encoding="utf-8", newline="") as file:
+        head, *rows = list(csv.reader(file))
+    students = listed(course)
+    sets = {name for name in course.sets() if (course.root / "release" / name).is_dir()}
+    journals = {name: Journal(course, name).entries for name in sets}
+    handed_in = {name: set(course.submitted(name)) for name in sets}
+    open_cells = {name: waiting(course, name) for name in sets}
+    for row in rows:
+        name, student = row[head.index("assignment")], row[head.index("student_id")]
+        if name in sets:
+            row.append(
+                state(
+                    journals[name].get(student),
+                    handed_in=student in handed_in[name],
+                    open_cells=len(open_cells[name].get(student, ())),
+                    listed=not students or student in students,
+                )
+            )
+    write_atomically(path, _csv([[*head, "state"], *rows]))
+
+
+def _usual(line: Line, most: int = USUAL) -> list[tuple[str, int]]:
+    """Return the most frequent wrong answers, the most frequent first; of as frequent ones, Python's errors last."""
+    return sorted(line.wrong.items(), key=lambda item: (-item[1], item[0][:1].isupper(), item[0]))[:most]
+
+
+def _said(seen: Overview) -> Iterator[str]:
+    yield (f"{seen.name}: {seen.handed_in} handed in, {seen.graded} graded; mean {seen.mean:.1f} of {seen.of:g} points")
+    yield ""
+    rows = [("task, part", "mean", "right", "usual wrong answers")]
+    for line in (line for line in seen.lines if not line.part):
+        rows.append(_row(line.task, line))
+        rows += [_row(f"  {part.part}", part) for part in seen.lines if part.part and part.task == line.task]
+    widths = [max(len(row[k]) for row in rows) for k in range(3)]
+    rows.insert(1, ("-" * widths[0], "-" * widths[1], "-" * widths[2], "-" * len(rows[0][3])))
+    for row in rows:
+        yield "  ".join([row[0].ljust(widths[0]), row[1].rjust(widths[1]), row[2].rjust(widths[2]), row[3]]).rstrip()
+    if seen.faults:
+        yield ""
+        yield f"To look at ({len(seen.faults)}):"
+        yield from (f"  {fault.student}  {fault.cell}  {fault.name}: {fault.says}" for fault in seen.faults)
+
+
+def _row(name: str, line: Line) -> tuple[str, str, str, str]:
+    usual = "; ".join(f"{count} x {fault}" for fault, count in _usual(line)) if line.part or line.wrong else ""
+    if line.open:
+        usual = f"{line.open} to be marked by hand" + (f"; {usual}" if usual else "")
+    return name, f"{line.mean:.2f} of {line.of:g}", f"{100 * line.right:.0f} %", usual
+
+
+def _overview_rows(seen: Overview) -> Iterable[Sequence[Any]]:
+    yield (
+        *("task", "part", "of", "students", "mean", "share_right", "to_mark_by_hand"),
+        *(f"{what}_{k}" for k in range(1, USUAL + 1) for what in ("wrong", "count")),
+    )
+    for line in seen.lines:
+        usual = [entry for pair in _usual(line) for entry in pair]
+        numbers = (line.of, len(line.points), round(line.mean, 4), round(line.right, 4), line.open)
+        yield line.task, line.part, *numbers, *usual, *[""] * (2 * USUAL - len(usual))
+
+
+def _csv(rows: Iterable[Sequence[Any]]) -> bytes:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    for row in rows:
+        writer.writerow(map(_harmless, row))
+    return text.getvalue().encode("utf-8")
+
+
+def _harmless(cell: Any) -> Any:
+    """Return a cell that no spreadsheet takes for a formula: students choose some of these words.
+
+    >>> _harmless("=1+1"), _harmless("-"), _harmless(-0.5)
+    ("'=1+1", '-', -0.5)
+    """
+    return f"'{cell}" if isinstance(cell, str) and len(cell) > 1 and cell[0] in "=+-@\t\r" else cell

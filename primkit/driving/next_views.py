@@ -1,0 +1,117 @@
+"""Views: what the next scan would show, from each square that the robot can reach.
+
+In:  a ``SeenMap``, the shapes found so far, the ``Ways`` from where the robot stands.
+Out: ``next_view``: the square to scan from next, or ``None`` when no reachable one would show anything new.
+
+A beam through the map goes on through what is free or unseen, and ends at a wall or a shape: what it meets on its way
+is what a scan would show. Unseen squares count by their area; a piece of outline that is still open counts
+for more, because it is little and decides much. The best view is the one with the most to see for the time
+that it takes to get there.
+
+Source: Connolly (1985), "The determination of next best views"; the weighing of gain and way follows
+Gonzalez-Banos and Latombe (2002), "Navigation strategies for exploring indoor environments".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..lidar import Lidar
+from .seen_map import SQUARE
+from .ways import SPEED, Ways
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+EVERY = 4  # views lie on every fourth square, both ways
+SPARSE = 2  # every second beam is followed: it tells nearly as much
+STANDING = 1.5  # s: a scan with its way is reckoned to take so much at least: few large gains, not many small ones
+HALF = SQUARE / np.sqrt(2)  # m: from a square's centre to its corner
+LEAST_GAIN = 0.5  # squares: a view that shows less shows nothing
+
+
+@dataclass(frozen=True)
+class View:
+    """A square to scan from.
+
+    Parameters
+    ----------
+    square : tuple of int
+        Its row and column.
+    gain : float
+        What the scan is expected to show, in unseen squares.
+    """
+
+    square: tuple[int, int]
+    gain: float
+
+
+def next_view(worth: Floats, opaque: Bools, ways: Ways, lidar: Lidar, been: Bools) -> View | None:
+    """Return the reachable view that shows most for its time; None when no new one shows anything.
+
+    The robot does not scan where an outline may stand nearer than the sensor's least distance: such an outline would
+    go unnoticed, and so would what is behind.
+
+    Parameters
+    ----------
+    worth : array, shape (N, N)
+        What each square is worth to be seen.
+    opaque : array of bool, shape (N, N)
+        Squares at which a beam ends.
+    ways : Ways
+        Ways to the squares.
+    lidar : Lidar
+        Its beams and its limits.
+    been : array of bool, shape (N, N)
+        Squares that it has scanned from: a second scan shows the same.
+    """
+    lattice = np.zeros(ways.fits.shape, dtype=bool)
+    lattice[EVERY // 2 :: EVERY, EVERY // 2 :: EVERY] = True
+    squares = np.argwhere(lattice & np.isfinite(ways.length) & (ways.room >= lidar.range_min + HALF) & ~been)
+    if len(squares) == 0:
+        return None
+    gains = _shown(squares, worth, opaque, lidar)[0].sum(axis=(1, 2))
+    times = ways.length[squares[:, 0], squares[:, 1]] / SPEED
+    best = int(np.argmax(gains / (times + STANDING)))
+    if gains[best] < LEAST_GAIN:
+        return None
+    return View((int(squares[best, 0]), int(squares[best, 1])), float(gains[best]))
+
+
+def shown_from(square: tuple[int, int], worth: Floats, opaque: Bools, lidar: Lidar) -> Bools:
+    """Tell which squares of any worth the beams from one square would show, shape (N, N)."""
+    shown, numbers, rim = _shown(np.array([square]), worth, opaque, lidar)
+    squares = np.zeros((len(worth) + 2 * rim, len(worth) + 2 * rim), dtype=bool)
+    squares.flat[numbers[shown > 0]] = True
+    return squares[rim:-rim, rim:-rim]
+
+
+def _shown(
+    squares: NDArray[np.int64], worth: Floats, opaque: Bools, lidar: Lidar
+) -> tuple[Floats, NDArray[np.int64], int]:
+    """Follow beams from squares, shape (M, 2), over the map with a rim around it.
+
+    Returns
+    -------
+    shown : array, shape (M, B, R)
+        Worth of what each beam meets at each step, times the area between it and its neighbour there, in squares.
+    numbers : array of int, shape (M, B, R)
+        Which square that is, by its number on the map with its rim.
+    rim : int
+        Squares around the map: beams may leave the board, and nothing is shown there.
+    """
+    steps = np.arange(lidar.range_min, lidar.range_max, SQUARE) + SQUARE / 2
+    bearings = lidar.angles[::SPARSE]
+    i, j = np.rint(np.stack([np.cos(bearings), np.sin(bearings)])[:, :, None] * steps / SQUARE).astype(np.int64)
+    rim = int(steps[-1] / SQUARE) + 1
+    width = len(worth) + 2 * rim
+    start = (squares[:, 0] + rim) * width + squares[:, 1] + rim
+    numbers = start[:, None, None] + (i * width + j)
+    stops = np.pad(opaque, rim).ravel()[numbers]
+    reached = np.ones_like(stops)  # a beam shows the wall that it ends at
+    np.logical_not(np.logical_or.accumulate(stops[:, :, :-1], axis=2), out=reached[:, :, 1:])
+    area = np.minimum(SPARSE * steps * lidar.angle_increment / SQUARE, 1.0)
+    return np.pad(worth, rim).ravel()[numbers] * reached * area, numbers, rim

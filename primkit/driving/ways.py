@@ -1,0 +1,166 @@
+"""Ways: through what the robot has seen to be free, from where it stands to anywhere else, and the wheels for it.
+
+In:  a ``SeenMap``, a place.
+Out: which squares the body fits on; how far each is; the corners of the shortest way; wheel speeds, shape (T, 2).
+
+>>> wheels = wheels_along(np.zeros(3), np.array([(0.0, 0.1)]))  # a quarter turn to the left, then ten centimetres
+>>> wheels.round(2).tolist()[0], wheels.round(2).tolist()[-1], len(wheels)
+([-4.98, 4.98], [6.1, 6.1], 12)
+
+Source: Dijkstra (1959), "A note on two problems in connexion with graphs".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..robot import AXLE, BODY, CLEAR, FASTEST, PERIOD, WHEEL
+from .seen_map import SQUARE, SeenMap
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Window = tuple[slice, slice]
+
+# m: the body's middle stays this far from the centre of every square that is not known to be free; what such a square
+# holds is at most half a diagonal, 7 mm, nearer.
+ROOM = BODY + 0.009
+RIM = 10  # squares around the board that nothing stands on
+NEARBY = 0.06  # m: who stands in a narrower place may leave it, where it gets no narrower
+STRIDES = ((1, 0), (0, 1), (1, 1), (1, -1))  # to half of the eight neighbours; the others are the same backwards
+SPEED = FASTEST * WHEEL  # m/s: as fast as it drives straight on
+SPIN = 2 * SPEED / AXLE  # rad/s: as fast as it turns on the spot
+
+
+@dataclass(frozen=True)
+class Ways:
+    """The shortest ways from one place to all squares.
+
+    Parameters
+    ----------
+    board : SeenMap
+        The map that they lead through.
+    room : array, shape (N, N)
+        How far the centre of each square is from the nearest that is not known to be free, metres.
+    fits : array of bool, shape (N, N)
+        Squares that the robot can stand on.
+    length : array, shape (N, N)
+        How far it is, metres; infinite where no way leads.
+    before : array of int, shape (N, N)
+        The square before each on its way, by its number; negative where there is none.
+    """
+
+    board: SeenMap
+    room: Floats
+    fits: Bools
+    length: Floats
+    before: NDArray[np.int64]
+
+    def to(self, square: tuple[int, int]) -> Floats:
+        """Return the corners of the shortest way to a square, shape (K, 2), metres; the start is left out."""
+        squares, at = [], int(np.ravel_multi_index(square, self.fits.shape))
+        while at >= 0:
+            squares.append(at)
+            at = int(self.before.flat[at])
+        return self._straightened(self.board.centers.reshape(-1, 2)[squares[::-1]])
+
+    def _straightened(self, way: Floats) -> Floats:
+        """Return a way without the corners that it can do without."""
+        kept, i = [], 0
+        while i < len(way) - 1:
+            i = next(j for j in range(len(way) - 1, i, -1) if j == i + 1 or self._is_free(way[i], way[j]))
+            kept.append(way[i])
+        return np.array(kept).reshape(-1, 2)
+
+    def _is_free(self, a: Floats, b: Floats) -> bool:
+        steps = np.linspace(0, 1, 2 + int(4 * np.hypot(*(b - a)) / SQUARE))[:, None]
+        return bool(self.fits[self.board.index(a + steps * (b - a))].all())
+
+
+def ways_from(board: SeenMap, place: Floats) -> Ways:
+    """Return the shortest ways from a place, shape (2,), metres, over all squares that the body fits on."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import dijkstra
+
+    here = tuple(int(i) for i in board.index(place))
+    room = room_on(board)
+    fits = standing_room(board, room, here)
+    numbers = np.arange(fits.size).reshape(fits.shape)
+    ends = []
+    for i, j in STRIDES:
+        first, second = _neighbours(fits.shape, i, j)
+        both = fits[first] & fits[second]
+        from_, to = numbers[first][both], numbers[second][both]
+        ends.append((from_, to, np.full(len(from_), SQUARE * np.hypot(i, j))))
+    rows, columns, lengths = (np.concatenate(parts) for parts in zip(*ends, strict=True))
+    graph = coo_array((lengths, (rows, columns)), shape=(fits.size, fits.size)).tocsr()
+    start = int(numbers[here])
+    length, before = dijkstra(graph, directed=False, indices=start, return_predecessors=True)
+    return Ways(board, room, fits, length.reshape(fits.shape), before.reshape(fits.shape))
+
+
+def room_on(board: SeenMap) -> Floats:
+    """Return how far each square's centre is from that of the nearest one not known to be free, shape (N, N), metres.
+
+    What lies beyond the board's edge is left out, up to the rim from which it counts.
+    """
+    from scipy.ndimage import distance_transform_edt
+
+    around = np.pad(np.pad(board.free, RIM, constant_values=True), 1)
+    room: Floats = SQUARE * distance_transform_edt(around)[RIM + 1 : -RIM - 1, RIM + 1 : -RIM - 1]
+    return room
+
+
+def standing_room(board: SeenMap, room: Floats, here: tuple[int, ...]) -> Bools:
+    """Tell which squares the body fits on: free all around, and within the board.
+
+    The square that the robot stands on is one in any case, and so are those nearby that are no narrower.
+    """
+    edge = board.size / 2 - np.abs(board.centers).max(axis=-1)
+    near = np.hypot(*np.moveaxis(board.centers - board.centers[here], -1, 0)) <= NEARBY
+    fits: Bools = (room >= ROOM) | (near & (room >= room[here]) & board.free)
+    fits &= edge >= BODY + CLEAR
+    fits[here] = True
+    return fits
+
+
+def _neighbours(shape: tuple[int, ...], i: int, j: int) -> tuple[Window, Window]:
+    """Return the windows of a map of this shape that hold each square, and the one i rows and j columns on."""
+    rows, columns = shape
+    first = slice(0, rows - i), slice(max(0, -j), columns - max(0, j))
+    return first, (slice(i, rows), slice(max(0, j), columns + min(0, j)))
+
+
+def wheels_along(pose: Floats, way: Floats) -> Floats:
+    """Return the wheel speeds that lead from a pose along a way, a pair for each period, shape (T, 2), rad/s.
+
+    Before each stretch the robot turns on the spot; each turn and each stretch takes whole periods.
+
+    Parameters
+    ----------
+    pose : array, shape (3,)
+        x [m], y [m], heading [rad].
+    way : array, shape (K, 2)
+        The way's corners and its end, metres.
+    """
+    (x, y, heading), wheels = pose.tolist(), [np.empty((0, 2))]
+    for to_x, to_y in way.tolist():
+        bearing = np.arctan2(to_y - y, to_x - x)
+        turn = np.mod(bearing - heading + np.pi, 2 * np.pi) - np.pi
+        wheels += [turning(turn), forward(np.hypot(to_x - x, to_y - y))]
+        x, y, heading = to_x, to_y, heading + turn
+    return np.vstack(wheels)
+
+
+def turning(turn: float) -> Floats:
+    """Return the wheel speeds of a turn on the spot by so many radians, shape (T, 2), rad/s."""
+    n = int(np.ceil(abs(turn) / (SPIN * PERIOD) - 1e-9))
+    return np.tile((-1.0, 1.0), (n, 1)) * turn * AXLE / (2 * WHEEL * PERIOD * max(1, n))
+
+
+def forward(way: float) -> Floats:
+    """Return the wheel speeds that lead so many metres straight on, shape (T, 2), rad/s."""
+    n = int(np.ceil(way / (SPEED * PERIOD) - 1e-9))
+    return np.full((n, 2), min(FASTEST, way / (WHEEL * PERIOD * max(1, n))))

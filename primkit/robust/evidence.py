@@ -1,0 +1,212 @@
+"""Evidence: what speaks for a shape, and what against it.
+
+A pentagon always lies closer to the points than a circle or a square can: it has more numbers to adjust. So a shape is
+charged for every number that had to be fitted, for the length over which it spreads its points, and for what was not
+seen of it. What remains is the evidence, and it decides.
+
+In:  the points of one cluster, shape (N, 2), metres, a figure fitted to them, and how far points spread from outlines.
+Out: a ``Candidate``: the figure with its cost; the smallest cost wins.
+
+>>> ring = Circle((0, 0), 0.05).outline(60)
+>>> judged(ring, Circle((0, 0), 0.05), 0.0005).cost < judged(ring, Circle((0, 0), 0.051), 0.0005).cost
+True
+
+Source: MacKay (1992), "Bayesian interpolation". The evidence is a relative of the BIC of Schwarz (1978), "Estimating
+the dimension of a model", which leaves out how much was known beforehand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..lines import Line
+from ..shapes import KINDS, Circle, Shape
+from .outlines import Outlines
+from .refine import shares
+from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
+
+Floats = NDArray[np.float64]
+
+GAP = 0.012  # m: a stretch of outline within this of a point counts as seen
+STEPS_PER_SIDE = 50  # a side is looked at in so many places, a circle in four times as many
+STEPS = (np.arange(STEPS_PER_SIDE) + 0.5)[:, None] / STEPS_PER_SIDE
+
+# What is supposed before the points are looked at. Each number of a shape is known to about a centimetre. An outline
+# is seen nearly all around: each metre that was not seen is as unlikely as one in e^40. And four sides without right
+# angles are none of the board's shapes: one in e^10.
+PRIOR_WIDTH = 0.01
+UNSEEN_COST = 80.0
+CROOKED_COST = 20.0
+
+
+# How uncertain N even points leave each fitted number, as a variance in units of spread^2 / N: a circle's centre and
+# radius; a side's offset and its angle (as a length, at the side's ends); a rectangle's four offsets and one angle; a
+# wall's offset, angle and ends.
+OF_CIRCLE = np.array([2.0, 2.0, 1.0])
+OF_SIDE = np.array([1.0, 3.0])
+OF_SQUARE = np.array([4.0, 4.0, 4.0, 4.0, 3.0])
+OF_FREE_SIDES = {k: np.tile(OF_SIDE * k, k) for k in (3, 4, 5)}  # a side has a kth of the points
+OF_WALL = np.array([1.0, 3.0, 1.0, 1.0])
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """One explanation of a cluster.
+
+    Parameters
+    ----------
+    figure : Circle, Outlines (one row) or None
+        What the points would lie on; None for a bare wall.
+    square : bool
+        Whether an outline of four sides keeps right angles.
+    cost : float
+        -2 times the logarithm of the evidence; smaller is better.
+    length : float
+        How much of the outline was seen, metres.
+    n_on : float
+        How many of the points lie on it; doubtful ones count in part.
+    seen : tuple of float
+        The share of each side (or of the whole circle) that has points near it; empty for a wall.
+    """
+
+    figure: Circle | Outlines | None
+    square: bool
+    cost: float
+    length: float
+    n_on: float
+    seen: tuple[float, ...] = ()
+
+    @cached_property
+    def shape(self) -> Shape | None:
+        """The figure as a shape; None for a bare wall."""
+        return self.figure.polygon() if isinstance(self.figure, Outlines) else self.figure
+
+    @property
+    def kind(self) -> str:
+        """The shape's kind, or ``"wall"``."""
+        if isinstance(self.figure, Outlines):
+            return KINDS[self.figure.angles.shape[1] - 2]
+        return "wall" if self.figure is None else "circle"
+
+
+def judged(points: Floats, figure: Circle | Outlines, spread: float, *, square: bool = False) -> Candidate:
+    """Return a fitted figure with its cost.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        Of the whole cluster, metres.
+    figure : Circle or Outlines (one row)
+        The fit.
+    spread : float
+        Standard deviation of the points from the outline, metres.
+    square : bool
+        Whether four sides were fitted with right angles.
+    """
+    if isinstance(figure, Circle):
+        lengths, fitted = np.array([figure.perimeter]), OF_CIRCLE
+        places = _places(figure)
+        distance = figure.signed_distance(points)
+        on_it, log_likelihood = _along_smooth(distance, spread)
+    else:
+        corners, after = figure.ends()
+        lengths, k = np.hypot(*(after - corners)[0].T), corners.shape[1]
+        places = _between(corners[0], after[0])
+        fitted = OF_SQUARE if square else OF_FREE_SIDES[k]
+        distance = figure.distances(points)[0].max(axis=1)
+        share, _, each = shares(points, figure, spread)
+        on_it, log_likelihood = float(share.sum()), float(each[0])
+    seen = _shares_near(places, points[np.abs(distance) <= SIGMAS * spread], GAP)
+    length = float(lengths @ np.array(seen))
+    cost = _cost(log_likelihood, fitted, len(points), spread) + _length_cost(on_it, length)
+    cost += UNSEEN_COST * float(lengths.sum() - length)
+    if len(lengths) == 4 and not square:
+        cost += CROOKED_COST
+    return Candidate(figure, square, cost, length, on_it, seen)
+
+
+def judged_wall(points: Floats, line: Line, length: float, spread: float) -> Candidate:
+    """Return a bare wall of that length, in metres, with its cost; its back was not seen."""
+    on_it, log_likelihood = _along_smooth(line.signed_distance(points), spread)
+    cost = _cost(log_likelihood, OF_WALL, len(points), spread) + _length_cost(on_it, length) + UNSEEN_COST * length
+    return Candidate(None, False, cost, length, on_it)
+
+
+def price(fitted: Floats, n_points: int, spread: float) -> float:
+    """Return what the fitted numbers cost: each the logarithm of how far the points narrow it down.
+
+    The sum of ln(1 + N w^2 / (v s^2)) over the numbers, with N points, the spread s, the width w of what was known of
+    each number beforehand, ``PRIOR_WIDTH``, and the variance v of each in units of s^2 / N.
+    """
+    return float(np.log1p(n_points * PRIOR_WIDTH**2 / (fitted * spread**2)).sum())
+
+
+def joint_cost(candidates: Sequence[Candidate]) -> float:
+    """Return the cost of explaining several clusters by a candidate each, all seen equally densely.
+
+    Two halves of an outline have half the length each, but no denser points than the whole: what counts is the
+    length of all.
+    """
+    n_on, length = sum(c.n_on for c in candidates), sum(c.length for c in candidates)
+    together = _length_cost(n_on, length) - sum(_length_cost(c.n_on, c.length) for c in candidates)
+    return sum(c.cost for c in candidates) + together
+
+
+def seen_shares(shape: Shape, points: Floats, gap: float = GAP) -> tuple[float, ...]:
+    """Return the share of each side, or of the whole circle, that lies within ``gap`` metres of a point.
+
+    Examples
+    --------
+    >>> from primkit.shapes import Polygon
+    >>> square = Polygon([(0, 0), (0.1, 0), (0.1, 0.1), (0, 0.1)])
+    >>> [round(share, 1) for share in seen_shares(square, np.array([(0.0, 0.05), (0.05, 0.0)]))]
+    [0.2, 0.0, 0.0, 0.2]
+    """
+    return _shares_near(_places(shape), points, gap)
+
+
+def _places(shape: Shape) -> Floats:
+    """Return where a shape is looked at: places on each of its sides, shape (K, M, 2); a circle has one side."""
+    if isinstance(shape, Circle):
+        return shape.outline(4 * STEPS_PER_SIDE)[None]
+    return _between(shape.vertices, shape.vertices + shape.edges)
+
+
+def _between(begin: Floats, end: Floats) -> Floats:
+    """Return places along K sides, shape (K, 2) each for their ends -> (K, STEPS_PER_SIDE, 2)."""
+    return begin[:, None] + STEPS * (end - begin)[:, None]
+
+
+def _shares_near(places: Floats, points: Floats, gap: float) -> tuple[float, ...]:
+    """Return of each row of places, shape (K, M, 2), the share that lies within ``gap`` metres of a point."""
+    from scipy.spatial import cKDTree
+
+    if len(points) == 0:
+        return (0.0,) * len(places)
+    nearest, _ = cKDTree(points).query(places)
+    return tuple((np.count_nonzero(nearest <= gap, axis=1) / places.shape[1]).tolist())
+
+
+def _along_smooth(distance: Floats, spread: float) -> tuple[float, float]:
+    """Return how many points lie on an outline without corners, and the logarithm of how likely they all are.
+
+    The model is that of ``refine.shares``.
+    """
+    on_it = (1 - GHOSTS) * scatter(distance, spread)[0] / OUTLINE_LENGTH
+    total = on_it + NOWHERE
+    return float((on_it / total).sum()), float(np.log(total).sum())
+
+
+def _cost(log_likelihood: float, fitted: Floats, n_points: int, spread: float) -> float:
+    """Return -2 times the logarithm of the evidence: -2 ln L + price (Laplace's approximation; MacKay, 1992)."""
+    return -2 * log_likelihood + price(fitted, n_points, spread)
+
+
+def _length_cost(n_on: float, length: float) -> float:
+    """Return what is added for n points spread evenly over ``length`` metres, and not over ``OUTLINE_LENGTH``."""
+    return float(2 * n_on * np.log(max(length, GAP) / OUTLINE_LENGTH))

@@ -1,0 +1,138 @@
+"""Outlines: convex outlines by their sides, many at once.
+
+A polygon under construction is its sides, not its corners: points lie on sides, and corners are where two
+sides meet. Many guesses are worked on at once, as rows of one array.
+
+In:  bearings and offsets of the sides, shape (C, K) each.
+Out: distances of points, corners, and which outlines are sound.
+
+>>> square = Outlines(np.array([[0, 0.5, 1, 1.5]]) * np.pi, np.full((1, 4), 0.1))
+>>> square.corners()[0].round(3).tolist()
+[[0.1, -0.1], [0.1, 0.1], [-0.1, 0.1], [-0.1, -0.1]]
+>>> square.sound().tolist()
+[True]
+
+Legend: C outlines of K sides each. A side lies on the line ``n . p = d``; ``angles`` are the bearings of the
+outward normals n, counter-clockwise from side to side, ``offsets`` are the d. ``r`` is a point's signed
+distance from a side's line. The outline is where the largest ``r`` over its sides is zero: a point belongs
+to the side from which it lies farthest out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..shapes import Polygon
+
+Floats = NDArray[np.float64]
+
+# What a board can hold, and a sensor can tell: sides of at least 1.5 cm, corners that bend by 15 to 160 degrees.
+LEAST_SIDE = 0.015
+LEAST_TURN, MOST_TURN = np.radians(15), np.radians(160)
+QUARTERS = np.arange(4) * (np.pi / 2)  # the bearings of a rectangle's normals, from its first
+# Lines that bend by less than this (as a sine) meet far beyond any board; this keeps the corner finite.
+PARALLEL = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Outlines:
+    """C convex outlines of K sides each, in normal form.
+
+    Parameters
+    ----------
+    angles : array, shape (C, K)
+        Bearings of the outward normals in radians, counter-clockwise from side to side.
+    offsets : array, shape (C, K)
+        Signed distances of the sides' lines from the origin, metres.
+    """
+
+    angles: Floats
+    offsets: Floats
+
+    def __len__(self) -> int:
+        return len(self.angles)
+
+    @cached_property
+    def _normals(self) -> Floats:
+        """The outward normals, shape (C, 2, K)."""
+        return np.stack([np.cos(self.angles), np.sin(self.angles)], axis=1)
+
+    @cached_property
+    def _spans(self) -> tuple[Floats, Floats]:
+        """What ``spans`` returns: it is asked for often."""
+        (first, last), cos, sin = self.ends(), self._normals[:, 0], self._normals[:, 1]
+        return first[..., 1] * cos - first[..., 0] * sin, last[..., 1] * cos - last[..., 0] * sin
+
+    def __getitem__(self, which: NDArray[np.integer] | NDArray[np.bool_] | slice) -> Outlines:
+        return Outlines(self.angles[which], self.offsets[which])
+
+    def distances(self, points: Floats) -> Floats:
+        """Return r, the signed distance of each point from each side's line, shape (C, N, K), metres."""
+        return points @ self._normals - self.offsets[:, None, :]
+
+    def along(self, points: Floats) -> Floats:
+        """Return where each point's foot lies along each side's line, shape (C, N, K), metres."""
+        cos, sin = self._normals[:, 0], self._normals[:, 1]
+        return points @ np.stack([-sin, cos], axis=1)
+
+    def corners(self) -> Floats:
+        """Return the corners, shape (C, K, 2), metres; corner i lies between side i - 1 and side i."""
+        cos, sin, d = self._normals[:, 0], self._normals[:, 1], self.offsets
+        before_cos, before_sin, before_d = _before(cos), _before(sin), _before(d)
+        bend = sin * before_cos - cos * before_sin
+        bend = np.where(np.abs(bend) < PARALLEL, PARALLEL, bend)
+        x = (before_d * sin - d * before_sin) / bend
+        y = (d * before_cos - before_d * cos) / bend
+        return np.stack([x, y], axis=-1)
+
+    def ends(self) -> tuple[Floats, Floats]:
+        """Return the corners in which each side begins and ends, shape (C, K, 2) each, metres."""
+        corners = self.corners()
+        return corners, _after(corners)
+
+    def spans(self) -> tuple[Floats, Floats]:
+        """Return where each side begins and ends along its line, shape (C, K) each, metres."""
+        return self._spans
+
+    def sound(self) -> NDArray[np.bool_]:
+        """Tell which outlines are closed and convex, with sides and corners that a sensor can tell, shape (C,)."""
+        turn = np.mod(_after(self.angles) - self.angles, 2 * np.pi)
+        begin, end = self.spans()
+        once_round = np.abs(turn.sum(axis=1) - 2 * np.pi) < 1e-6
+        bends = ((turn >= LEAST_TURN) & (turn <= MOST_TURN)).all(axis=1)
+        return once_round & bends & (end - begin >= LEAST_SIDE).all(axis=1)
+
+    def moved(self, offset: Floats) -> Outlines:
+        """Return the outlines shifted by ``offset``, shape (2,), metres."""
+        return Outlines(self.angles, self.offsets + np.cos(self.angles) * offset[0] + np.sin(self.angles) * offset[1])
+
+    def polygon(self, index: int = 0) -> Polygon:
+        """Return one of the outlines as a Polygon."""
+        return Polygon(self.corners()[index])
+
+
+def _before(sides: Floats) -> Floats:
+    """Return for each side what belongs to the one before it; several times faster than np.roll."""
+    return np.concatenate([sides[:, -1:], sides[:, :-1]], axis=1)
+
+
+def _after(sides: Floats) -> Floats:
+    """Return for each side what belongs to the one after it."""
+    return np.concatenate([sides[:, 1:], sides[:, :1]], axis=1)
+
+
+def joined(*outlines: Outlines) -> Outlines:
+    """Return several stacks of outlines with equally many sides as one."""
+    angles = np.concatenate([o.angles for o in outlines])
+    return Outlines(angles, np.concatenate([o.offsets for o in outlines]))
+
+
+def from_angle_order(angles: Floats, offsets: Floats) -> Outlines:
+    """Return outlines from sides in any order: they are put in the order of their normals' bearings."""
+    angles = np.mod(angles, 2 * np.pi)
+    order = np.argsort(angles, axis=1, kind="stable")
+    return Outlines(np.take_along_axis(angles, order, axis=1), np.take_along_axis(offsets, order, axis=1))

@@ -1,0 +1,261 @@
+"""Regroup: the second opinion on which points belong together.
+
+Linking neighbours splits an outline where a stretch of it was not seen, and joins shapes that stand too close.
+Once shapes are measured this can be judged: two groups become one when one shape explains them better than
+two, and one becomes two when two shapes do.
+
+In:  groups of points, and how far points spread from outlines.
+Out: groups again, each with its explanations.
+
+>>> from primkit.shapes import Circle
+>>> ring = Circle((0, 0), 0.06).outline(100)
+>>> halves = [explained(ring[:45], 0.0004), explained(ring[50:95], 0.0004)]
+>>> groups, margins = regrouped(halves, 0.0004)
+>>> len(groups), groups[0].shape.kind
+(1, 'circle')
+
+Source: splitting and merging by what explains the points better, as X-Means does: Pelleg and Moore (2000), "X-means:
+extending K-means with efficient estimation of the number of clusters".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..segmentation import LEAST_GROUP, kmeans
+from ..shapes import Polygon, Shape
+from .candidates import candidates, explained_again
+from .choice import Choice
+from .evidence import Candidate, joint_cost, seen_shares
+from .first_fit import at_a_glance, at_another_glance
+from .scatter import NOWHERE, SIGMAS
+
+Floats = NDArray[np.float64]
+Explain = Callable[[Floats], "Group"]
+
+CLOSED = 0.9  # an outline seen on nine tenths of its length is no piece of another
+WELL_EXPLAINED = 0.9  # share of a group's points on its shape; with fewer, the group may be two
+MOST_ACROSS = 0.45  # m: the paper's largest rectangle is 0.424 m from corner to corner; wider pieces are of two shapes
+HULL_SPREADS, HULL_CELLS = 6.0, 0.002  # the hull runs along the outermost points: others lie up to so much inside [m]
+FEW_NEW = 0.1  # share of new points up to which a group is fitted anew from what it was
+SURE = 30.0  # margin up to which a few points more may change what a group is
+INSIDE_HULL = 0.05  # share of points that may lie inside a hull which should be an outline
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Points that belong together, with their explanations, the best first, at a spread in metres."""
+
+    points: Floats
+    ranked: list[Candidate]
+    spread: float
+    n_thorough: int  # how many points it had when all explanations were looked for
+    choice: Choice
+
+    @property
+    def shape(self) -> Shape | None:
+        """The best explanation's shape; None for a bare wall or too few points."""
+        return self.ranked[0].shape if self.ranked else None
+
+    @cached_property
+    def closed(self) -> bool:
+        """Whether the best explanation's outline was seen nearly all around."""
+        shape = self.shape
+        if shape is None:
+            return False
+        lengths = shape.sides if isinstance(shape, Polygon) else [shape.perimeter]
+        if np.average(self.ranked[0].seen, weights=lengths) >= CLOSED:  # by those points alone that lie on it
+            return True
+        return bool(np.average(seen_shares(shape, self.points), weights=lengths) >= CLOSED)
+
+
+@dataclass(frozen=True)
+class _Tried:
+    """What was tried: how groups would split, what pairs would merge into, and by how much a group won."""
+
+    halves: dict[Group, tuple[Group, ...]]
+    unions: dict[tuple[Group, Group], Group | None]
+    won_by: dict[Group, float]
+
+
+def cost_of(groups: Sequence[Group]) -> float:
+    """Return the cost of the groups' best explanations together; points too few for any come from nowhere."""
+    strays = sum(len(g.points) for g in groups if not g.ranked)
+    return joint_cost([g.ranked[0] for g in groups if g.ranked]) - 2 * strays * float(np.log(NOWHERE))
+
+
+def explained(points: Floats, spread: float, seed: int = 0, *, soft: bool = True, thorough: bool = True) -> Group:
+    """Return the points with all their explanations; or, if not to be thorough, with one that a glance is sure of.
+
+    Every group is measured with the same seed, so that a group's result does not depend on the others.
+    """
+    best = None if thorough else at_a_glance(points, spread, soft=soft)
+    ranked = candidates(points, spread, soft=soft, rng=seed) if best is None else [best]
+    return Group(points, ranked, spread, len(points), Choice(points, ranked, spread, seed, soft, best is not None))
+
+
+def grown(old: Group, points: Floats, spread: float, *, soft: bool = True) -> Group | None:
+    """Return a group that has a few points more than it had, its explanation fitted anew from what it was.
+
+    Returns
+    -------
+    Group or None
+        None where all explanations should be looked for: many points are new, others are gone, what the group is was
+        in doubt, or it is so now.
+    """
+    in_doubt = not old.choice.at_a_glance and not _sure(old.ranked)
+    if in_doubt or not 1 <= len(points) / old.n_thorough <= 1 + FEW_NEW or not _holds(points, old.points):
+        return None
+    if old.choice.at_a_glance:
+        best = at_another_glance(points, old.ranked[0], spread, soft=soft)
+        ranked = [] if best is None else [best]
+    else:
+        ranked = explained_again(points, old.ranked, spread, soft=soft)
+    if not ranked or ranked[0].kind != old.ranked[0].kind or not (old.choice.at_a_glance or _sure(ranked)):
+        return None
+    return Group(points, ranked, spread, old.n_thorough, replace(old.choice, points=points, ranked=ranked))
+
+
+def _sure(ranked: list[Candidate]) -> bool:
+    """Tell whether the best explanation is far ahead of the best one of another kind."""
+    if len(ranked) < 2:
+        return False
+    return next((c.cost for c in ranked if c.kind != ranked[0].kind), float("inf")) - ranked[0].cost >= SURE
+
+
+def _holds(points: Floats, fewer: Floats) -> bool:
+    """Tell whether all of the fewer points are among the points; in both no point stands twice."""
+    one, other = (np.ascontiguousarray(p).view(complex) for p in (fewer, points))  # a point as one number: 5 x faster
+    return bool(np.isin(one, other).all())
+
+
+def regrouped(
+    groups: Sequence[Group],
+    spread: float,
+    n_shapes: int | None = None,
+    *,
+    explain: Explain | None = None,
+) -> tuple[list[Group], list[float]]:
+    """Split and merge groups as long as that explains the points better.
+
+    Parameters
+    ----------
+    groups : sequence of Group
+        As segmentation left them.
+    spread : float
+        Standard deviation of the points from the outlines, metres.
+    n_shapes : int, optional
+        The number of groups to end with, when it is known.
+    explain : callable, optional
+        Explains (N, 2) points as a group; ``explained`` by default.
+
+    Returns
+    -------
+    groups : list of Group
+        As many as asked for, as far as the points allow; else as many as explain the points best.
+    margins : list of float
+        For each group, how much better it explains the points than the best grouping in which it is split or
+        merged with a neighbour: twice the logarithm of the Bayes factor; infinite when none was in question.
+    """
+    explain = explain or partial(explained, spread=spread)
+    tried = _Tried({}, {}, {})
+    groups = list(groups)
+    if n_shapes is None or len(groups) < n_shapes:
+        groups = _split_all(groups, spread, n_shapes, explain, tried)
+    if n_shapes is None or len(groups) > n_shapes:
+        groups = _merge_all(groups, spread, n_shapes, explain, tried)
+    return groups, [_margin(g, groups, tried) for g in groups]
+
+
+def _margin(group: Group, groups: list[Group], tried: _Tried) -> float:
+    """Return how much worse the best other grouping of a group's points is; infinite when none was tried."""
+    others = [tried.won_by.get(group, float("inf")), _gain(tried.halves.get(group, ()), group)]
+    for (a, b), union in tried.unions.items():
+        if union is not None and group in (a, b) and a in groups and b in groups:
+            others.append(cost_of([union]) - cost_of([a, b]))
+    return min(others)
+
+
+def _split_all(
+    groups: list[Group], spread: float, n_shapes: int | None, explain: Explain, tried: _Tried
+) -> list[Group]:
+    """Split the group that gains most by it, again and again."""
+    limit = 0.0 if n_shapes is None else np.inf
+    while n_shapes is None or len(groups) < n_shapes:
+        for g in groups:
+            if g not in tried.halves:
+                tried.halves[g] = _halves(g, spread, n_shapes, explain)
+        best = min(groups, key=lambda g: _gain(tried.halves[g], g), default=None)
+        if best is None or not _gain(tried.halves[best], best) < limit:
+            break
+        parts, at = tried.halves[best], groups.index(best)
+        groups = [*groups[:at], *parts, *groups[at + 1 :]]
+        tried.won_by.update(dict.fromkeys(parts, -_gain(parts, best)))
+    return groups
+
+
+def _gain(parts: tuple[Group, ...], group: Group) -> float:
+    """Return by how much the parts cost more than the whole; infinite without parts."""
+    return cost_of(parts) - cost_of([group]) if parts else float("inf")
+
+
+def _halves(group: Group, spread: float, n_shapes: int | None, explain: Explain) -> tuple[Group, ...]:
+    """Return a group as two, cut by K-Means; nothing when it is too small, or well explained as it is."""
+    if not group.ranked or len(group.points) < 2 * LEAST_GROUP:
+        return ()
+    if n_shapes is None and _share_on_shape(group, spread) >= WELL_EXPLAINED:
+        return ()
+    labels = kmeans(group.points, 2, rng=0)
+    return tuple(explain(group.points[labels == label]) for label in (0, 1))
+
+
+def _share_on_shape(group: Group, spread: float) -> float:
+    """Return the share of a group's points that lie on its best shape, or on its wall: no wall is two of anything."""
+    if group.shape is None:
+        return group.ranked[0].n_on / len(group.points)
+    return float(np.mean(np.abs(group.choice.distance) <= SIGMAS * spread))
+
+
+def _merge_all(
+    groups: list[Group], spread: float, n_shapes: int | None, explain: Explain, tried: _Tried
+) -> list[Group]:
+    """Merge the two groups that gain most by it, again and again."""
+    while len(groups) > (n_shapes or 1):
+        best, best_gain = None, 0.0 if n_shapes is None else np.inf
+        for a, b in combinations(groups, 2):
+            if (a, b) not in tried.unions:
+                plausible = n_shapes is not None or _may_be_one(a, b, spread)
+                tried.unions[a, b] = explain(np.vstack([a.points, b.points])) if plausible else None
+            one = tried.unions[a, b]
+            gain = cost_of([one]) - cost_of([a, b]) if one is not None and one.ranked else np.inf
+            if one is not None and gain < best_gain:
+                best, best_gain = (a, b, one), gain
+        if best is None:
+            break
+        a, b, one = best
+        groups = [one if g is a else g for g in groups if g is not b]
+        tried.won_by[one] = -best_gain
+    return groups
+
+
+def _may_be_one(a: Group, b: Group, spread: float) -> bool:
+    """Tell quickly whether two groups can be pieces of one convex outline.
+
+    One of them must be open, and the points of both must lie along the hull of both.
+    """
+    import shapely
+
+    if a.closed and b.closed:
+        return False
+    points = np.vstack([a.points, b.points])
+    hull = shapely.MultiPoint(points).convex_hull
+    if 2 * shapely.minimum_bounding_radius(hull) > MOST_ACROSS:
+        return False
+    depth = shapely.distance(hull.boundary, shapely.points(points))
+    return bool(np.mean(depth > HULL_SPREADS * spread + HULL_CELLS) <= INSIDE_HULL)

@@ -1,0 +1,88 @@
+"""Moving: somebody takes a shape while the robot drives, and puts it down somewhere else.
+
+In:  a ``World``, and where the robot is.
+Out: another ``World``, in which one shape stands elsewhere; or None where there is no room for that.
+
+>>> from primkit.shapes import Circle
+>>> before = World([Circle((0.2, 0.0), 0.05)])
+>>> after = with_one_moved(before, np.zeros(3), np.random.default_rng(0))
+>>> way = after.shapes[0].centroid - before.shapes[0].centroid
+>>> bool(NEAREST <= np.hypot(*way) <= FARTHEST)
+True
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..driving.moving_grid import MovingGrid
+from ..measure import Detection
+from ..robot import CLEAR, clearance
+from ..shapes import Shape
+from ..world import World, gap_between
+from .page import share_seen
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+NEAREST, FARTHEST = 0.08, 0.2  # m: how far a shape is moved
+TURNED = 0.5  # rad: by how much it is turned at most, either way
+ROOM = 0.08  # m between shapes: the body is 7.4 cm wide
+EDGE = 0.1  # m from the edge of the board: the sensor sees round a shape only from the board
+TRIES = 500
+DEEP = 0.012  # m: who lies so deep within a shape is not of its outline
+MOSTLY = 0.6  # of an outline: who has seen so much of it may say what lies within
+
+
+def with_one_moved(world: World, pose: Floats, rng: np.random.Generator) -> World | None:
+    """Return a board on which one shape stands 8 to 20 cm elsewhere, and turned; None where there is no room.
+
+    Parameters
+    ----------
+    world : World
+        The board before.
+    pose : array, shape (3,)
+        Where the robot is: nothing is put down on it, or so near that it would be stuck.
+    rng : numpy.random.Generator
+        Chooses the shape and its place.
+    """
+    if not world.shapes:
+        return None
+    for _ in range(TRIES):
+        chosen, bearing = int(rng.integers(len(world.shapes))), rng.uniform(0, 2 * np.pi)
+        way = rng.uniform(NEAREST, FARTHEST) * np.array([np.cos(bearing), np.sin(bearing)])
+        new = world.shapes[chosen].moved(way, rng.uniform(-TURNED, TURNED))
+        rest = [shape for number, shape in enumerate(world.shapes) if number != chosen]
+        if _has_room(new, rest, world.size, pose):
+            return World([*rest[:chosen], new, *rest[chosen:]], size=world.size)
+    return None
+
+
+def _has_room(shape: Shape, rest: list[Shape], size: float, pose: Floats) -> bool:
+    """Tell whether a shape keeps its distance to the others, to the edge, and to the robot."""
+    if np.abs(shape.outline(100)).max() > size / 2 - EDGE or any(gap_between(shape, one) < ROOM for one in rest):
+        return False
+    return float(clearance(World([shape], size=size), pose[None, :2])[0]) > 10 * CLEAR
+
+
+def left_within(grid: MovingGrid, found: Iterable[Detection]) -> Bools:
+    """Tell which cells lie within a shape that stands there since, shape (N,): no beam will ever contradict them.
+
+    Parameters
+    ----------
+    grid : MovingGrid
+        The map.
+    found : iterable of Detection
+        The shapes in it; those of whose outline little was seen have no say.
+    """
+    points, last = grid.points(), grid.last_seen
+    left = np.zeros(len(points), dtype=bool)
+    for one in found:
+        apart = one.shape.signed_distance(points)
+        own = np.abs(apart) <= DEEP
+        if own.any() and share_seen(one) >= MOSTLY:
+            left |= (apart < -DEEP) & (last < np.median(last[own]))
+    return left

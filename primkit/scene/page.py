@@ -1,0 +1,114 @@
+"""Sketch: what the page needs to know to draw a board with a robot; ``board.js`` draws it.
+
+In:  a ``Detection``, a board's size, a sensor.
+Out: messages: dictionaries of numbers and words, lengths in tenths of a millimetre.
+
+>>> tenths(np.array([[0.1, -0.02]]))
+[[1000, -200]]
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..driving.seen_map import OUTLINE_STEP
+from ..lidar import Lidar
+from ..measure import Detection
+from ..plots.look import GREY, INK, KIND_COLORS, KIND_INKS, ORANGE, PALE, SKY
+from ..robot import BODY
+from ..robust.evidence import GAP
+from ..shapes import Circle, Shape
+
+Floats = NDArray[np.float64]
+Message = dict[str, Any]
+
+COLORS = {"ink": INK, "grey": GREY, "pale": PALE, "beam": SKY, "hit": ORANGE}
+FAR = 1e-4  # m: lengths go to the page in tenths of a millimetre
+
+
+def page(*names: str) -> str:
+    """Return files that stand beside this one as one text: a widget's script comes as one module."""
+    return "\n".join(Path(__file__).with_name(name).read_text(encoding="utf-8") for name in names)
+
+
+def board_and_look(size: float, lidar: Lidar, cell: float) -> Message:
+    """Return what stays the same while the robot drives: the board in metres, and the colours."""
+    board = {"size": size, "body": BODY, "reach": lidar.range_max, "cell": cell}
+    return {"board": board, "look": {"colors": COLORS, "kinds": KIND_COLORS, "inks": KIND_INKS}}
+
+
+def told_ranges(ranges: Floats) -> list[int]:
+    """Return ranges in tenths of a millimetre, and -1 where nothing was hit."""
+    told: list[int] = np.where(np.isfinite(ranges), np.rint(ranges / FAR), -1).astype(int).tolist()
+    return told
+
+
+def drawn(one: Detection) -> Message:
+    """Return how a shape is drawn: its outline in stretches that were seen, or are only supposed, and its name.
+
+    Examples
+    --------
+    Half of a circle was seen; the last stretch closes on the first:
+
+    >>> from primkit.robust.deviations import Certainty
+    >>> circle = Circle((0, 0), 0.1)
+    >>> told = drawn(Detection(circle, circle.outline(200)[:101], 0.0, sure=Certainty((), (0.001,))))
+    >>> told["name"], [seen for seen, _ in told["stretches"]]
+    ('circle, radius 100 mm', [True, False, True])
+    """
+    ring = ring_of(one.shape)
+    seen = _seen(ring, one.points)
+    stretches, start = [], 0
+    for end in range(1, len(ring)):
+        if end == len(ring) - 1 or seen[end] != seen[start]:
+            stretches.append([bool(seen[start]), tenths(ring[start : end + 1])])
+            start = end
+    (place,) = tenths(one.shape.centroid[None])
+    return {"kind": one.kind, "name": _name(one), "place": place, "stretches": stretches}
+
+
+def ring_of(shape: Shape) -> Floats:
+    """Return points along the outline, the corners among them, the first one again as the last, shape (N, 2)."""
+    if isinstance(shape, Circle):
+        ring = shape.outline(max(24, int(shape.perimeter / OUTLINE_STEP)))
+    else:
+        ring = np.vstack(
+            [
+                corner + np.linspace(0, 1, max(2, int(side / OUTLINE_STEP)), endpoint=False)[:, None] * edge
+                for corner, edge, side in zip(shape.vertices, shape.edges, shape.sides, strict=True)
+            ]
+        )
+    return np.vstack([ring, ring[:1]])
+
+
+def _seen(places: Floats, points: Floats) -> NDArray[np.bool_]:
+    """Tell which places on an outline have a point of their own near them, shape (N,)."""
+    from scipy.spatial import cKDTree
+
+    near: NDArray[np.bool_] = cKDTree(points).query(places)[0] <= GAP
+    return near
+
+
+def share_seen(one: Detection) -> float:
+    """Return how much of a shape's outline has points of its own near it, 0 to 1."""
+    return float(_seen(ring_of(one.shape), one.points).mean())
+
+
+def _name(one: Detection) -> str:
+    """Return kind and dimensions in millimetres; a question mark for what was not measured."""
+    lengths = [f"{1000 * d:.0f}" if known else "?" for d, known in zip(one.shape.dimensions, one.measured, strict=True)]
+    if isinstance(one.shape, Circle):
+        return f"circle, radius {lengths[0]} mm"
+    if one.kind == "rectangle":
+        return f"rectangle, {' x '.join(lengths)} mm"
+    return f"{one.kind}, sides {', '.join(lengths)} mm"
+
+
+def tenths(points: Floats) -> list[list[int]]:
+    """Return points in tenths of a millimetre: short to send, and finer than a screen."""
+    told: list[list[int]] = np.rint(points / FAR).astype(int).tolist()
+    return told

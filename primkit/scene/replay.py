@@ -1,0 +1,168 @@
+"""Replay: a drive that was recorded, played like a film in the scene's own picture.
+
+In:  a ``Drive``, as ``load_drive`` returns it.
+Out: ``Replay``, a widget with a button and a slider; all is sent at once, so that it plays without Python behind it.
+
+>>> from primkit.lidar import scan
+>>> from primkit.shapes import Circle
+>>> world = World([Circle((0.3, 0.0), 0.05)])
+>>> player = replay(Drive(scan(world, [(0, 0, 0), (0.01, 0, 0)]), [(0, 0), (5, 5)]))
+>>> player
+Replay: 2 scans in 0.1 s, 0 shapes found
+>>> player.close()
+
+The shapes are those that would have been found on the way: they are looked for each time that the map has grown by a
+fifth, and once more in the end.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import anywidget
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arguments import check_type
+from ..evaluation import evaluate
+from ..formats import Drive
+from ..grid import Grid
+from ..measure import Detection
+from ..pipeline import Memory, find_shapes
+from ..world import World
+from .page import FAR, Message, board_and_look, drawn, page, ring_of, tenths
+
+Ints = NDArray[np.int64]
+
+GROWN = 1.2  # so many times the cells are worth another look
+NO_HIT = -1
+FARTHEST = 32_767  # tenths of a millimetre: ranges go to the page as whole numbers of 16 bits
+
+
+def replay(drive: Drive, world: World | None = None, *, rng: int = 0) -> Replay:
+    """Show a drive as a film: play, pause, and a slider for the time.
+
+    Parameters
+    ----------
+    drive : Drive
+        What was driven and seen.
+    world : World, optional
+        The truth: then the score is shown, and a button that shows the outlines.
+    rng : int
+        Seed for the search.
+
+    Returns
+    -------
+    Replay
+        A widget, shown when it is the last value of a cell. ``plot_drive`` draws the same as a strip of frames.
+
+    Raises
+    ------
+    ValueError
+        If the drive has no scans, or an argument is of another type.
+
+    Examples
+    --------
+    >>> replay([])
+    Traceback (most recent call last):
+        ...
+    ValueError: drive must be a Drive, such as load_drive(path), got list
+    """
+    check_type(drive, Drive, "drive must be a Drive, such as load_drive(path)")
+    if world is not None:
+        check_type(world, World, "world must be a World")
+    check_type(rng, int, "rng must be a seed, a whole number")
+    if len(drive) == 0:
+        raise ValueError("a drive must have scans to be played, got none")
+    return Replay(drive, world, Film(drive, rng))
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """The shapes from a scan on: its number, from 0, and what is found then."""
+
+    scan: int
+    found: list[Detection]
+
+
+class Film:
+    """What is new with each scan of a drive.
+
+    Parameters
+    ----------
+    drive : Drive
+        What was driven and seen.
+    rng : int
+        Seed for the search.
+    """
+
+    def __init__(self, drive: Drive, rng: int = 0) -> None:
+        grid, scans = Grid(), drive.scans
+        cells, first = np.unique(grid.to_cells(scans.points()), axis=0, return_index=True)
+        scan_of = np.nonzero(scans.hits)[0][first]
+        order = np.argsort(scan_of, kind="stable")
+        self.cells: Ints = cells[order]  # in the order in which they were seen, shape (M, 2)
+        self.known: Ints = np.searchsorted(scan_of[order], np.arange(len(drive)), side="right")  # after each scan
+        self.looks = self._looked_at(grid, rng)
+
+    def _looked_at(self, grid: Grid, rng: int) -> list[Shown]:
+        """Return the shapes on the way, whenever the map has grown enough, and in the end."""
+        memory: Memory = {}
+        looks, n_looked_at, last = [], 0, len(self.known) - 1
+        for number, n in enumerate(self.known.tolist()):
+            if n > n_looked_at and (n >= GROWN * n_looked_at or number == last):
+                points = grid.to_points(self.cells[:n])
+                looks.append(Shown(number, find_shapes(points, memory=memory, rng=rng)))
+                n_looked_at = n
+        return looks
+
+
+class Replay(anywidget.AnyWidget):
+    """The player of one ``Drive``; ``replay`` makes it."""
+
+    _esm = page("board.js", "replay.js")
+    _css = page("scene.css")
+
+    def __init__(self, drive: Drive, world: World | None, film: Film) -> None:
+        super().__init__()
+        self.drive, self.world, self.film = drive, world, film
+        self.on_msg(lambda _, asked, __: self.answer(asked))
+
+    def __repr__(self) -> str:
+        n, found = len(self.drive), len(self.film.looks[-1].found) if self.film.looks else 0
+        seconds = (n - 1) * self.drive.period
+        return f"Replay: {n:,} scan{'s' * (n != 1)} in {seconds:.1f} s, {found} shape{'s' * (found != 1)} found"
+
+    def answer(self, asked: Message) -> None:
+        """Send the whole film to a page that says hello."""
+        if asked == {"do": "hello"}:
+            self.send(self.told(), [self._ranges().tobytes(), self.film.cells.astype("<i4").tobytes()])
+
+    def told(self) -> Message:
+        """Return all but the ranges and the cells, which go to the page as numbers of two and of four bytes."""
+        drive, truth = self.drive, () if self.world is None else self.world.shapes
+        size = 1.0 if self.world is None else self.world.size
+        looks = [
+            {"scan": look.scan, "shapes": [drawn(one) for one in look.found], "score": self._score(look)}
+            for look in self.film.looks
+        ]
+        return board_and_look(size, drive.lidar, Grid().resolution) | {
+            "poses": np.round(drive.poses, 5).tolist(),
+            "beams": drive.lidar.beams,
+            "period": drive.period,
+            "known": self.film.known.tolist(),
+            "looks": looks,
+            "truths": [tenths(ring_of(shape)) for shape in truth],
+        }
+
+    def _score(self, look: Shown) -> str:
+        found = f"{len(look.found)} found"
+        if self.world is None:
+            return found
+        return f"{found} · score {evaluate(look.found, self.world).weighted_accuracy:.2f}"
+
+    def _ranges(self) -> NDArray[np.int16]:
+        """Return ranges in tenths of a millimetre, shape (P, B), -1 where nothing was hit."""
+        ranges = self.drive.scans.ranges
+        told = np.where(np.isfinite(ranges), np.rint(ranges / FAR), NO_HIT)
+        return np.minimum(told, FARTHEST).astype("<i2")

@@ -1,0 +1,267 @@
+"""Scene: drive the robot with the keys W A S D or the arrow keys, and watch its map grow.
+
+In:  a ``World`` that the robot does not know, and a ``Lidar``.
+Out: ``Scene``, a widget for JupyterLab and Voila; its ``state`` is a ``DriveState``.
+
+>>> from primkit.shapes import Circle
+>>> scene = drive_scene(World([Circle((0.3, 0.0), 0.05)]))
+>>> scene
+Scene: 0.0 s driven, 1 scan, 0 shapes found
+>>> scene.close()
+
+The page (``scene.js``, ``board.js``) has the clock: while a key is held it asks for a step ten times a second, one at a
+time, and the kernel answers each with what is new. So nothing runs on when nobody drives, and a slow computer drives
+slowly instead of lagging behind. Shapes are looked for beside that, in a thread: with much noise a look takes longer
+than a step, and then the outlines are some scans old, which the page says. When all keys are let go, it asks on until
+the last look is done. Nothing is drawn that the robot has not measured, unless the truth is switched on; the score
+knows the truth, too.
+"""
+
+from __future__ import annotations
+
+from concurrent.futures import Executor, Future
+from functools import partial
+from pathlib import Path
+
+import anywidget
+import numpy as np
+
+from ..lidar import Lidar
+from ..world import World
+from .finder import beside
+from .keys import wheels_for
+from .page import Message, board_and_look, drawn, page, ring_of, tenths, told_ranges
+from .runs import Comparison
+from .state import DriveState, automatic_runs
+
+OLD = 5  # scans: outlines that know all scans but so many are as good as new
+
+
+def drive_scene(
+    world: World,
+    lidar: Lidar | None = None,
+    *,
+    journal: str | Path | None = None,
+    moving: bool = False,
+    rng: int = 0,
+    executor: Executor | None = None,
+) -> Scene:
+    """Show a board on which the robot is driven by hand: W A S D, the arrow keys, or the buttons.
+
+    Parameters
+    ----------
+    world : World
+        What stands on the board; the robot does not know it.
+    lidar : Lidar, optional
+        The sensor, with its noise; the paper's by default.
+    journal : str or path, optional
+        A file ending in ``.jsonl`` that each scan is written to as it happens; ``load_drive`` reads it. A file that
+        is there already stays as it is: the next free of ``drive.jsonl``, ``drive-2.jsonl``, ... is taken.
+    moving : bool
+        Whether things may be moved meanwhile, by a button more; the map then gives up what later scans contradict.
+    rng : int
+        Seed for the sensor's noise, for the search, and for what is moved where.
+    executor : Executor, optional
+        Who looks for shapes while the robot drives; a thread of its own by default.
+
+    Returns
+    -------
+    Scene
+        A widget, shown when it is the last value of a cell. Its ``state`` has all that the robot knows: ``pose``,
+        ``grid``, ``found``, ``score``, ``time``; ``state.finish()`` waits until the shapes are up to date.
+
+    Raises
+    ------
+    ValueError
+        If an argument is of another type, or the robot has no room on the board.
+
+    Examples
+    --------
+    >>> drive_scene(World(), journal="drive.txt")
+    Traceback (most recent call last):
+        ...
+    ValueError: journal must be a file name that ends in .jsonl, got drive.txt
+    """
+    executor = beside() if executor is None else executor
+    return Scene(DriveState(world, lidar, journal=journal, moving=moving, rng=rng, executor=executor))
+
+
+class Scene(anywidget.AnyWidget):
+    """The scene of one ``DriveState``; ``drive_scene`` makes it.
+
+    Parameters
+    ----------
+    state : DriveState
+        The robot and what it knows.
+    """
+
+    _esm = page("board.js", "hand.js", "scene.js")
+    _css = page("scene.css")
+
+    def __init__(self, state: DriveState) -> None:
+        super().__init__()
+        self.state = state
+        self.paused = self.shows_unseen = self.shows_truth = False
+        self._shown: list[Message] = []  # the shapes as the page has them
+        self._shown_of = 0  # how many scans they were found in
+        self._automatic: Future[Comparison] | None = None  # under way, or done
+        self._compared: Message | None = None
+        self.on_msg(lambda _, asked, __: self.answer(asked))
+
+    def __repr__(self) -> str:
+        scans, found = self.state.n_scans, len(self.state.found)
+        driven = f"{self.state.time:.1f} s driven, {scans} scan{'s' * (scans != 1)}"
+        return f"Scene: {driven}, {found} shape{'s' * (found != 1)} found"
+
+    def answer(self, asked: Message) -> None:
+        """Do what the page asks for, and send it what has changed.
+
+        Parameters
+        ----------
+        asked : dict
+            ``{"do": "step", "held": ["forward", "left"]}``; or ``do`` is ``"news"`` (of what goes on beside the
+            drive), ``"hello"`` (a page that has just been opened, and needs all), ``"undo"``, ``"pause"``,
+            ``"unseen"``, ``"truth"``, ``"move"`` or ``"automatic"``.
+        """
+        match asked:
+            case {"do": "step", "held": list(held)}:
+                if not self.paused:
+                    self._send_step(held)
+                else:
+                    self.send({"say": "Paused: the robot stands still until you go on.", "done": True})
+            case {"do": "news"}:
+                self.send(self._news() | {"done": True})
+            case {"do": "hello"}:
+                self._send_all()
+            case {"do": "undo"}:
+                self.state.undo()
+                self._automatic = self._compared = None
+                self._send_all("Back at the start: all is forgotten.")
+            case {"do": "pause"}:
+                self.paused = not self.paused
+                self.send({"paused": self.paused, "say": "Paused." if self.paused else "Going on."})
+            case {"do": "unseen"}:
+                self.shows_unseen = not self.shows_unseen
+                self._send_unseen()
+            case {"do": "truth"}:
+                self.shows_truth = not self.shows_truth
+                self.send(self._truth())
+            case {"do": "move"}:
+                self._move_something()
+            case {"do": "automatic"}:
+                self._compare()
+
+    def _send_step(self, held: list[str]) -> None:
+        """Make a step; the page gets the picture before anything is said of shapes."""
+        state = self.state
+        new, gone = state.move(wheels_for(held))
+        message = self._now() | {"cells": new.tolist(), "gone": gone.tolist()}
+        if state.stopped:
+            message["say"] = "Something is in the way: the robot only turns."
+        self.send(message)
+        self.send(self._news() | {"done": True})
+        if self.shows_unseen:
+            self._send_unseen()
+
+    def _news(self) -> Message:
+        """Return what has come of the work beside the drive, and whether there is more to come."""
+        return self._mapped() | self._comparison() | {"busy": self._busy}
+
+    @property
+    def _busy(self) -> bool:
+        """Whether there is more to come, even if nobody drives."""
+        return self.state.looks or (self._automatic is not None and self._compared is None)
+
+    def _mapped(self) -> Message:
+        """Fetch shapes, begin to look for them if it is time to; return what is new about them."""
+        try:
+            self.state.map()
+        except Exception as error:  # whatever it is: who drives must hear of it, and can drive on
+            return {"say": f"The look for shapes failed, the drive goes on: {type(error).__name__}: {error}"}
+        if self.state.n_scans_found == self._shown_of:
+            return {}
+        before, self._shown = self._shown, [drawn(one) for one in self.state.found]
+        self._shown_of = self.state.n_scans_found
+        if self._shown == before:
+            return {"score": self._score()}
+        return {"shapes": self._shown, "score": self._score(), "say": _news_of(before, self._shown)}
+
+    def _score(self) -> str:
+        state = self.state
+        driven = f"{state.time:.1f} s · {state.n_scans:,} scan{'s' * (state.n_scans != 1)}"
+        age = state.n_scans - state.n_scans_found
+        old = f" · shapes {age} scans old" if age > OLD and state.looks else ""
+        return f"{driven} · {len(state.found)} found · score {state.score:.2f}{old}"
+
+    def _now(self) -> Message:
+        """Return what every step changes: pose, ranges, time, score."""
+        state = self.state
+        record = state.trouble or (f"recording {state.record.name}" if state.record else "")
+        pose, ranges = [round(float(value), 5) for value in state.pose], told_ranges(state.scan.ranges[0])
+        return {"pose": pose, "ranges": ranges, "scans": state.n_scans, "score": self._score(), "record": record}
+
+    def _send_all(self, say: str = "") -> None:
+        """Send all that there is: to a page that knows nothing, or shall forget what it knows."""
+        state = self.state
+        self._shown, self._shown_of = [drawn(one) for one in state.found], state.n_scans_found
+        same = board_and_look(state.world.size, state.lidar, state.grid.resolution) | {"moving": state.moving}
+        all_ = {"cells": state.grid.cells.tolist(), "shapes": self._shown, "automatic": self._compared}
+        self.send(self._now() | same | all_ | self._truth() | {"paused": self.paused, "say": say, "busy": self._busy})
+        self._send_unseen()
+
+    def _send_unseen(self) -> None:
+        """Send which squares of the board were not yet seen, a bit each, or none when that is switched off."""
+        if not self.shows_unseen:
+            self.send({"unseen": 0})
+            return
+        unseen = self.state.unseen()
+        self.send({"unseen": len(unseen)}, [np.packbits(unseen).tobytes()])
+
+    def _truth(self) -> Message:
+        shown = self.state.world.shapes if self.shows_truth else ()
+        return {"truth": [tenths(ring_of(shape)) for shape in shown], "truthful": self.shows_truth}
+
+    def _move_something(self) -> None:
+        """Move a shape; what the robot has seen of it stays until it looks again."""
+        moved = self.state.move_something()
+        self._automatic = self._compared = None  # that was another board
+        say = "Somebody has moved a shape. Go and look." if moved else "There is no room to move anything."
+        self.send(self._truth() | {"say": say, "automatic": None, "score": self._score()})
+
+    def _compare(self) -> None:
+        """Begin to drive by itself on this board, beside the drive by hand; or say again what came of it."""
+        state = self.state
+        if self._automatic is None:
+            work = partial(automatic_runs, state.world, state.lidar, state.seed)
+            self._automatic = state.beside(lambda: Comparison(work()))
+            self.send({"say": "The robot drives by itself now: way-points, then explore."})
+        self.send(self._news())
+
+    def _comparison(self) -> Message:
+        """Return the runs beside each other, once the automatic ones are done."""
+        if self._automatic is None or not self._automatic.done():
+            return {}
+        try:
+            automatic = self._automatic.result().runs
+        except Exception as error:
+            self._automatic = None
+            return {"say": f"The robot cannot drive by itself here: {type(error).__name__}: {error}"}
+        places = {run.name: tenths(run.way) for run in automatic}
+        runs = Comparison((self.state.by_hand(), *automatic))
+        say = {} if self._compared else {"say": "The robot has driven by itself, too: see the table."}
+        self._compared = {"table": runs.texts(), "places": places}
+        return {"automatic": self._compared} | say
+
+    def close(self) -> None:
+        """Take the scene from the page, close the journal, and end the work beside the drive."""
+        self.state.close()
+        super().close()
+
+
+def _news_of(before: list[Message], now: list[Message]) -> str:
+    """Say in one sentence what is new about the shapes; nothing when only their measures have changed."""
+    if [one["kind"] for one in before] == [one["kind"] for one in now]:
+        return ""
+    if not now:
+        return "No shape is found any more."
+    return f"Found so far: {', '.join(one['kind'] for one in now)}."

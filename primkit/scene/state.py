@@ -1,0 +1,349 @@
+"""Driving: the robot under somebody's hand, and what it knows so far; the scene without its picture.
+
+In:  a ``World``, and the speeds of the wheels for each tenth of a second.
+Out: a ``DriveState``: pose, last scan, cells, shapes found so far, score, time.
+
+>>> from primkit.shapes import Circle
+>>> from primkit.scene.keys import wheels_for
+>>> state = DriveState(World([Circle((0.3, 0.0), 0.05)]))
+>>> step = state.step(wheels_for(["forward"]))
+>>> state.pose.round(4).tolist(), len(step.new_cells)
+([0.0129, 0.0, 0.0], 2)
+>>> state.undo()
+>>> state.pose.tolist(), state.n_scans
+([0.0, 0.0, 0.0], 1)
+
+Each step turns the wheels for a period of the sensor, scans once, adds the hits to the grid, and begins to look for
+shapes when a hundredth of the grid is new since the last look; what is left over is looked at when the robot stands or
+sees nothing new. The look is the business of a ``Finder``: in a script it is done before the step is, in the scene it
+goes on beside the drive, and the shapes are those of the last one that is done. What a step takes does not grow with
+the time: scans are not kept, and the grid is as large as the outlines are long. Who wants the scans back writes a
+journal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor, Future
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arguments import check_type
+from ..driving.moving_grid import MovingGrid
+from ..driving.seen_map import EXPLAINED, SeenMap
+from ..evaluation import evaluate
+from ..formats import DriveJournal, record_drive
+from ..grid import Grid
+from ..lidar import Lidar, Scans, scan
+from ..measure import Detection
+from ..robot import advance, start_pose
+from ..world import World
+from .finder import MOST, AtOnce, Finder, thinned
+from .keys import STANDING
+from .moved_shape import left_within, with_one_moved
+from .runs import Comparison, Run, by_exploring, from_waypoints
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+NEWS = 0.01  # when this share of the cells has come or gone since the last look, it is time for another
+FAR = 1 << 31  # cells: farther apart than any two on a board
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """What one step changed.
+
+    Parameters
+    ----------
+    new_cells : array of int, shape (M, 2)
+        Cells of the grid that were hit for the first time.
+    gone_cells : array of int, shape (K, 2)
+        Cells that were given up: only where things may move.
+    stopped : bool
+        Whether something was in the robot's way.
+    mapped : bool
+        Whether a look for shapes was done; else they are what they were.
+    """
+
+    new_cells: Ints
+    gone_cells: Ints
+    stopped: bool
+    mapped: bool
+
+
+class DriveState:
+    """A robot that is driven by hand, and its map.
+
+    Parameters
+    ----------
+    world : World
+        What stands on the board.
+    lidar : Lidar, optional
+        The sensor; the paper's by default. A step takes its period.
+    journal : str or path, optional
+        A file ending in ``.jsonl`` that each scan is written to as it happens; ``load_drive`` reads it. It is made
+        with the first step. No file is ever replaced: where there is one already, and after ``undo``, the next
+        free of ``drive.jsonl``, ``drive-2.jsonl``, ... is taken.
+    moving : bool
+        Whether things may be moved meanwhile: the map is then a ``MovingGrid``, which gives up what is contradicted.
+    rng : int
+        Seed for the sensor's noise, for the search, and for what is moved where.
+    executor : Executor, optional
+        Who looks for shapes: ``AtOnce()`` by default, ``beside()`` in a thread of its own.
+
+    Raises
+    ------
+    ValueError
+        If an argument is of another type, or the robot has no room on the board.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        lidar: Lidar | None = None,
+        *,
+        journal: str | Path | None = None,
+        moving: bool = False,
+        rng: int = 0,
+        executor: Executor | None = None,
+    ) -> None:
+        check_type(world, World, "world must be a World, as in drive_scene(world)")
+        self.lidar, self.seed, self.moving = Lidar() if lidar is None else lidar, rng, moving
+        check_type(self.lidar, Lidar, "lidar must be a Lidar, such as Lidar()")
+        check_type(moving, bool, "moving must be True or False")
+        check_type(rng, int, "rng must be a seed, a whole number")
+        self.journal = None if journal is None else Path(journal)
+        if self.journal is not None and self.journal.suffix != ".jsonl":
+            raise ValueError(f"journal must be a file name that ends in .jsonl, got {self.journal.name}")
+        self._start_world = world
+        self._written: DriveJournal | None = None
+        self._finder = Finder(AtOnce() if executor is None else executor, rng)
+        self.undo()
+        self.finish()
+
+    def undo(self) -> None:
+        """Go back to the start and forget all that was seen; what was written to a journal stays."""
+        self._end_journal()
+        self._finder.forget()
+        self.trouble = ""  # why the journal could not be written, in one sentence
+        self.world, self.pose, self.n_scans, self.stopped = self._start_world, start_pose(self._start_world), 0, False
+        self.grid: Grid = MovingGrid(lidar=self.lidar) if self.moving else Grid()
+        self._cells = self.grid.cells  # as they were told last
+        self.found = list[Detection]()
+        self.n_scans_found = 0  # how many scans the shapes were found in
+        self.seen_map = SeenMap(self.world.size)
+        self._rng, self._hand = np.random.default_rng(self.seed), np.random.default_rng([self.seed, 1])
+        self._n_news = 0  # cells that have come or gone since the last look began
+        self._rests = True  # stands, or sees nothing new
+        self._scan()
+        self.map()
+
+    def step(self, wheels: ArrayLike = STANDING) -> Step:
+        """Turn the wheels for a period, scan, and map: ``move`` and ``map`` together.
+
+        Parameters
+        ----------
+        wheels : array_like, shape (2,)
+            Speeds of the left and the right wheel, radians per second, as ``wheels_for`` gives them.
+
+        Returns
+        -------
+        Step
+            What has changed.
+
+        Raises
+        ------
+        ValueError
+            If the wheels are too fast; all then stays as it was.
+        """
+        new, gone = self.move(wheels)
+        return Step(new, gone, self.stopped, self.map())
+
+    def move(self, wheels: ArrayLike = STANDING) -> tuple[Ints, Ints]:
+        """Turn the wheels for a period and scan; return the cells that are new and that are gone, shapes (M, 2)."""
+        self.pose, self.stopped = advance(self.world, self.pose, wheels, self.lidar.period)
+        before = self.scan
+        new, gone = self._scan()
+        self._rests = len(new) == 0 or not np.any(wheels)
+        self._write(before, wheels)
+        return new, gone
+
+    def map(self) -> bool:
+        """Fetch the shapes of a look that is done, and begin another when it is time; tell whether one was done.
+
+        Raises
+        ------
+        Exception
+            Whatever ended the look, if it could not be finished.
+        """
+        done = self._fetch()
+        enough = 0 < self._n_news >= (0 if self._rests else NEWS * len(self.grid))
+        if enough and not self._finder.busy:
+            self._begin_look()
+            done = self._fetch() or done
+        return done
+
+    def _begin_look(self, most: int = MOST) -> None:
+        """Have the map looked at, or so many of its cells."""
+        cells = self.grid.cells
+        self._n_news = 0
+        self._finder.look(self.grid.to_points(cells[thinned(cells, most)]), self.n_scans)
+
+    def _fetch(self, wait: bool = False) -> bool:
+        news = self._finder.news(wait=wait)
+        if news is not None:
+            self.found, self.n_scans_found = news.found, news.n_scans
+            if isinstance(self.grid, MovingGrid):
+                self.grid.give_up(left_within(self.grid, self.found))  # the next scan tells what is gone
+        return news is not None
+
+    def finish(self) -> None:
+        """Look at all that was seen, afresh, and wait for it: ``found`` is then what ``find_shapes`` makes of the map.
+
+        Raises
+        ------
+        Exception
+            Whatever ended the look, if it could not be finished.
+        """
+        looked_at = -1
+        while looked_at != len(self.grid):  # what the shapes rule out is given up, and leaves another map
+            looked_at = len(self.grid)
+            self._finder.forget()
+            self._begin_look(most=looked_at)
+            self._fetch(wait=True)
+
+    @property
+    def looks(self) -> bool:
+        """Whether a look is under way, or due as soon as the robot rests."""
+        return self._finder.busy or (self._rests and self._n_news > 0)
+
+    def _scan(self) -> tuple[Ints, Ints]:
+        """Scan from where the robot is, and return the cells that are new, and that are gone, shapes (M, 2)."""
+        self.scan: Scans = scan(self.world, self.pose, self.lidar, rng=self._rng)
+        self.n_scans += 1
+        self.seen_map.add(self.scan, self.lidar.range_min, self.lidar.range_max)
+        before = self._cells
+        self.grid.add(self.scan)
+        self._cells = now = self.grid.cells
+        new, gone = _only_in(now, before), _only_in(before, now)
+        self._n_news += len(new) + len(gone)
+        return new, gone
+
+    def move_something(self) -> bool:
+        """Move one shape to another place, unseen by the robot; tell whether there was room for that.
+
+        Raises
+        ------
+        ValueError
+            If the map is one of things that stand still.
+        """
+        after = with_one_moved(self.world, self.pose, self._hand)
+        if after is not None:
+            self.rearrange(after)
+        return after is not None
+
+    def rearrange(self, world: World) -> None:
+        """Put things where they are in another world, of the same size; the robot stays where it is.
+
+        Raises
+        ------
+        ValueError
+            If the map is one of things that stand still, the board is of another size, or the robot would stand in a
+            shape.
+        """
+        if not self.moving:
+            raise ValueError("things must be allowed to move, as in drive_scene(world, moving=True)")
+        check_type(world, World, "world must be a World")
+        if world.size != self.world.size:
+            raise ValueError(f"the board must stay {self.world.size:g} m wide, got {world.size:g} m")
+        advance(world, self.pose, STANDING, 0)  # refuses a place in a shape
+        self.world = world
+
+    @property
+    def time(self) -> float:
+        """How long the robot has been driving, seconds: a period for each step."""
+        return (self.n_scans - 1) * self.lidar.period
+
+    @property
+    def score(self) -> float:
+        """Weighted accuracy of what was found so far, 0 to 1."""
+        return evaluate(self.found, self.world).weighted_accuracy
+
+    def unseen(self) -> NDArray[np.bool_]:
+        """Return which squares of a centimetre may still hide a shape, shape (N, N), as ``SeenMap`` numbers them."""
+        explained = self.seen_map.covered([one.shape for one in self.found], EXPLAINED)
+        return self.seen_map.hiding_places(explained)
+
+    def compare(self) -> Comparison:
+        """Return this drive beside the way-points and ``explore`` on the same board with the same sensor.
+
+        The first takes some tenths of a second, the other some seconds.
+        """
+        self.finish()
+        return Comparison((self.by_hand(), *automatic_runs(self.world, self.lidar, self.seed)))
+
+    def by_hand(self) -> Run:
+        """Return what came of this drive so far."""
+        name, note = "by hand", "it scans while it drives"
+        return Run(name, self.n_scans, self.time, len(self.found), self.score, note, self.pose[None, :2])
+
+    def beside(self, work: Callable[[], T]) -> Future[T]:
+        """Have other work done where shapes are looked for, between two looks."""
+        return self._finder.submit(work)
+
+    def _write(self, before: Scans, wheels: ArrayLike) -> None:
+        """Write the last scan to the journal, and the one before any step when there is none yet."""
+        if self.journal is None or self.trouble:
+            return
+        try:
+            if self._written is None:
+                self._written = _opened(self.journal, self.lidar)
+                self._written.add(before, STANDING)
+            self._written.add(self.scan, wheels)
+        except (OSError, ValueError) as error:  # a full disk ends the record, not the drive
+            self.trouble = str(error)
+            self._end_journal()
+
+    @property
+    def record(self) -> Path | None:
+        """The file that this drive is being written to; None before the first step, or without a journal."""
+        return None if self._written is None else self._written.path
+
+    def close(self) -> None:
+        """Close the journal, if one is open, and let go of who looks for shapes."""
+        self._end_journal()
+        self._finder.close()
+
+    def _end_journal(self) -> None:
+        """Close the journal, if one is open; the next step after this begins another."""
+        if self._written is not None:
+            self._written.close()
+        self._written = None
+
+
+def automatic_runs(world: World, lidar: Lidar, rng: int) -> tuple[Run, Run]:
+    """Return what the two automatic movements find on a board."""
+    return from_waypoints(world, lidar, rng), by_exploring(world, lidar, rng)
+
+
+def _only_in(cells: Ints, others: Ints) -> Ints:
+    """Return the cells that are not among the others, shape (M, 2); in both no cell stands twice."""
+    one, other = (each[:, 0] * FAR + each[:, 1] for each in (cells, others))
+    return cells[np.isin(one, other, assume_unique=True, invert=True)]
+
+
+def _opened(path: Path, lidar: Lidar) -> DriveJournal:
+    """Open a journal in a file of its own: the first of drive.jsonl, drive-2.jsonl, ... that is free."""
+    number, free = 1, path
+    while True:
+        try:
+            return record_drive(free, lidar)
+        except FileExistsError:
+            number += 1
+            free = path.with_stem(f"{path.stem}-{number}")

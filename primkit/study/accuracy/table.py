@@ -1,0 +1,294 @@
+"""Accuracy: how right the methods are against noise, number of shapes, number of scans and spurious returns.
+
+In:  the name of a sweep, a number of maps, a seed.
+Out: an ``AccuracyTable``: for each level and method the weighted accuracy, the count and the errors, the oracle's
+beside them.
+
+>>> from primkit.pipeline import ROBUST
+>>> table = run_accuracy("gap", 2, settings={"ROBUST": ROBUST}, jobs=1)
+>>> [(line.level, line.method, line.coarse.value) for line in table.lines[:2]]
+[('gap 5 cm', 'ROBUST', 1.0), ('gap 5 cm', 'oracle', 1.0)]
+
+What a method could do at best, the oracle shows (``oracle.py``); what is drawn, ``sweeps.py`` says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arguments import as_count
+from ...formats import StrPath
+from ...pipeline import Settings
+from ..estimate import Estimate, mean_of, ratio_of, share_of
+from ..many import METHODS, checked_jobs, perform_all
+from ..oracle import ORACLE, Oracle
+from ..row import Row
+from ..table import as_block, as_csv, as_html, wrapped
+from .sweeps import REMEDIES, SWEEPS, UNTUNED, Level, experiments, n_runs
+
+Floats = NDArray[np.float64]
+
+FINE, COARSE = 0.001, 0.005  # m: the two tolerances
+TRUTHS = "oracle"  # its name among the methods
+
+RIGHT_HEADER = ("", "within 1 mm", "within 5 mm", "right count")
+ERROR_HEADER = ("", "centre [mm]", "x oracle", "dimens. [mm]", "x oracle", "time [s]")
+
+
+@dataclass(frozen=True)
+class AccuracyLine:
+    """One method at one level.
+
+    Parameters
+    ----------
+    level : str
+        The level's name.
+    x : float
+        Its place on the axis.
+    method : str
+        Whose figures these are.
+    n_maps, n_runs : int
+        How many maps, and how many runs on them.
+    fine, coarse : Estimate
+        Weighted accuracy within 1 mm and within 5 mm, two-sided: the mean over the maps.
+    count : Estimate, optional
+        Share of the runs with the right number of shapes; None for a method that is told it.
+    n_shapes : int
+        How many shapes method and oracle both found as what they are; the errors are theirs.
+    center_rms, dimension_rms : float
+        Root mean square errors, metres.
+    center_ratio, dimension_ratio : Estimate, optional
+        The same divided by the oracle's; None for the oracle, and without such shapes.
+    time : float, optional
+        Median computing time of a map, seconds; None for the oracle.
+    """
+
+    level: str
+    x: float
+    method: str
+    n_maps: int
+    n_runs: int
+    fine: Estimate
+    coarse: Estimate
+    count: Estimate | None
+    n_shapes: int
+    center_rms: float
+    center_ratio: Estimate | None
+    dimension_rms: float
+    dimension_ratio: Estimate | None
+    time: float | None
+
+    def right_cells(self) -> tuple[str, ...]:
+        """Return the method and what share of it is right, as texts."""
+        return (self.method, str(self.fine), str(self.coarse), "told" if self.count is None else str(self.count))
+
+    def error_cells(self) -> tuple[str, ...]:
+        """Return how far off the method is and how long it takes, as texts."""
+        cells = []
+        for rms, ratio in ((self.center_rms, self.center_ratio), (self.dimension_rms, self.dimension_ratio)):
+            cells += [f"{1000 * rms:.3f}", "-" if ratio is None else ratio.text(2 if ratio.value < 10 else 0)]
+        return (*cells, "-" if self.time is None else f"{self.time:.3f}")
+
+
+@dataclass(frozen=True)
+class AccuracyTable:
+    """The lines of one sweep; prints as text, shows as HTML in a notebook.
+
+    Parameters
+    ----------
+    sweep, title, axis : str
+        Name, title, and label of the axis.
+    lines : tuple of AccuracyLine
+        Level by level.
+    notes : tuple of str
+        What a reader must know, one thought each.
+    """
+
+    sweep: str
+    title: str
+    axis: str
+    lines: tuple[AccuracyLine, ...]
+    notes: tuple[str, ...] = ()
+    file: ClassVar[str] = "accuracy.csv"  # holds all sweeps
+
+    def groups(self) -> list[tuple[str, list[AccuracyLine]]]:
+        """Return each level's heading with its lines."""
+        return [(_heading(level[0]), level) for level in self._levels()]
+
+    def _levels(self) -> list[list[AccuracyLine]]:
+        return [list(lines) for _, lines in groupby(self.lines, key=lambda line: line.level)]
+
+    def __str__(self) -> str:
+        right = [(heading, [line.right_cells() for line in lines]) for heading, lines in self.groups()]
+        off = [(h, [(line.method, *line.error_cells()) for line in lines]) for h, lines in self.groups()]
+        blocks = [*as_block(RIGHT_HEADER, right), "", *as_block(ERROR_HEADER, off)]
+        return "\n".join([self.title, "", *blocks, *wrapped(self.notes)])
+
+    def _repr_html_(self) -> str:
+        groups = [(h, [line.right_cells() + line.error_cells() for line in lines]) for h, lines in self.groups()]
+        return as_html(self.title, RIGHT_HEADER + ERROR_HEADER[1:], groups, self.notes)
+
+
+def run_accuracy(
+    sweep: str = "noise",
+    n_maps: int = 100,
+    *,
+    settings: Mapping[str, Settings] = METHODS,
+    seed: int = 0,
+    folder: StrPath | None = None,
+    jobs: int | None = -1,
+    progress: bool = True,
+) -> AccuracyTable:
+    """Change one thing, and say how right each method is and how right the oracle.
+
+    Parameters
+    ----------
+    sweep : str
+        What is changed: a name in ``SWEEPS``.
+    n_maps : int
+        Maps for each level. The paper's suite always has its 34, scanned as often as comes near this number.
+    settings : dict of str to Settings
+        The methods by name; for ``"remedies"`` the remedies take their place.
+    seed : int
+        Other seeds draw other maps; the same seed gives the same table, times apart.
+    folder, jobs, progress
+        As for ``run_study``: where the journal is, how many processes, whether a bar is shown.
+
+    Returns
+    -------
+    AccuracyTable
+        Level by level; at each the methods, and the oracle last.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or the journal holds something else than rows.
+    OSError
+        If the journal cannot be written.
+
+    Notes
+    -----
+    Methods and oracle get the same points. Errors are compared on those shapes that both found as what they are, with
+    the centre within 10 cm.
+    """
+    if sweep not in SWEEPS:
+        raise ValueError(f"sweep must be one of {', '.join(SWEEPS)}, got {sweep!r}")
+    n_maps, seed = as_count(n_maps, "n_maps"), as_count(seed, "seed", least=0)
+    if TRUTHS in settings:
+        raise ValueError(f'settings must not be called "{TRUTHS}"')
+    chosen = SWEEPS[sweep]
+    methods: dict[str, Settings | Oracle] = {**(REMEDIES if chosen.remedies else settings), TRUTHS: ORACLE}
+    sizes = [len(methods) * n_runs(level.condition, n_maps) for level in chosen.levels]
+    every = (e for level in chosen.levels for e in experiments(level.condition, methods, n_maps, seed))
+    rows = perform_all(every, folder=folder, jobs=checked_jobs(jobs), total=sum(sizes), progress=progress)
+    ends = np.cumsum(sizes)
+    parts = [rows[end - size : end] for size, end in zip(sizes, ends, strict=True)]
+    lines = [line for level, part in zip(chosen.levels, parts, strict=True) for line in level_lines(level, part)]
+    return AccuracyTable(sweep, chosen.title, chosen.axis, tuple(lines), _notes(chosen.note, lines, seed))
+
+
+def level_lines(level: Level, rows: Sequence[Row]) -> list[AccuracyLine]:
+    """Return a line for each method; ``rows`` hold all methods' runs on the same maps, the oracle's among them."""
+    by_method = {name: [r for r in rows if r.settings == name] for name in dict.fromkeys(r.settings for r in rows)}
+    return [_line(level, own, by_method[TRUTHS]) for own in by_method.values()]
+
+
+def _line(level: Level, rows: Sequence[Row], oracle: Sequence[Row]) -> AccuracyLine:
+    method, told = rows[0].settings, all(row.told for row in rows)
+    names = [row.map for row in rows]
+    scores = np.array([[row.within(t).weighted for t in (FINE, COARSE)] + [row.count_right] for row in rows])
+    means = _by_map(names, scores) / _by_map(names, np.ones((len(rows), 1)))
+    sums = _by_map(names, np.array([_squares(*pair) for pair in zip(rows, oracle, strict=True)]))
+    n_shapes, n_centers, n_dimensions = (int(n) for n in sums[:, :3].sum(axis=0))
+    ours, theirs = sums[:, 3:5], sums[:, 5:7]
+    return AccuracyLine(
+        level=level.name,
+        x=level.x,
+        method=method,
+        n_maps=len(means),
+        n_runs=len(rows),
+        fine=mean_of(means[:, 0]),
+        coarse=mean_of(means[:, 1]),
+        count=None if told else share_of(float(means[:, 2].mean()), len(means)),
+        n_shapes=n_shapes,
+        center_rms=_root_mean(ours[:, 0], n_centers),
+        center_ratio=None if method == TRUTHS else _ratio(ours[:, 0], theirs[:, 0]),
+        dimension_rms=_root_mean(ours[:, 1], n_dimensions),
+        dimension_ratio=None if method == TRUTHS else _ratio(ours[:, 1], theirs[:, 1]),
+        time=None if method == TRUTHS else float(np.median([row.computing_time for row in rows])),
+    )
+
+
+def _squares(ours: Row, oracle: Row) -> tuple[float, ...]:
+    """Return how many shapes, coordinates and dimensions both have right in kind, and the sums of squared errors."""
+    both = [
+        (own, true)
+        for own, true in zip(ours.errors_by_shape(), oracle.errors_by_shape(), strict=True)
+        if own is not None and true is not None
+    ]
+    counts = [len(both), sum(len(own[0]) for own, _ in both), sum(len(own[1]) for own, _ in both)]
+    sums = [float(np.square(pair[who][part]).sum()) for who in (0, 1) for part in (0, 1) for pair in both]
+    n = len(both)
+    return (*counts, *(sum(sums[i * n : (i + 1) * n]) for i in range(4)))
+
+
+def _by_map(names: Sequence[str], values: Floats) -> Floats:
+    """Return the sums over the runs on each map, shape (N, Q) -> (M, Q): maps are the independent draws."""
+    _, which = np.unique(names, return_inverse=True)
+    sums = np.zeros((which.max() + 1, values.shape[1]))
+    np.add.at(sums, which, values)
+    return sums
+
+
+def _root_mean(squares: Floats, n: int) -> float:
+    return float(np.sqrt(squares.sum() / n)) if n else float("nan")
+
+
+def _ratio(ours: Floats, theirs: Floats) -> Estimate | None:
+    return ratio_of(ours, theirs, root=True) if theirs.sum() > 0 else None
+
+
+def _heading(line: AccuracyLine) -> str:
+    maps = f"{line.n_maps} map{'s' * (line.n_maps != 1)}"
+    repeats = f", {line.n_runs} runs" if line.n_runs != line.n_maps else ""
+    return f"{line.level}, {maps}{repeats}"
+
+
+def _notes(note: str, lines: Sequence[AccuracyLine], seed: int) -> tuple[str, ...]:
+    told = [m for m in dict.fromkeys(line.method for line in lines if line.count is None) if m != TRUTHS]
+    return (
+        note,
+        "within: weighted accuracy, a value being right when at most that far off, either way.",
+        "right count: share of runs that found as many shapes as there are"
+        + (f"; {' and '.join(told)} is told the number." if told else "."),
+        "centre, dimens.: root mean square errors of the shapes that the method and the oracle both found as what they "
+        "are (centre within 10 cm). x oracle: divided by the oracle's on the same shapes.",
+        "oracle: the least-squares fit that is told which point belongs to which side. It does not know of right "
+        "angles, and has no shape where a side was not seen: a method can be ahead of it.",
+        "time: median computing time of a map.",
+        "In brackets: 95 % interval over the maps (bootstrap; of the count Wilson's). Where all n maps score 1, up to "
+        "about 3/n of all such maps may still score less.",
+        f"Maps and noise are drawn from {UNTUNED} and {seed}; nothing was tuned on them.",
+    )
+
+
+def accuracy_as_csv(tables: Iterable[AccuracyTable]) -> str:
+    """Return the lines of several sweeps as CSV: scores from 0 to 1, errors in millimetres, times in seconds."""
+    estimates = ("fine", "coarse", "count", "center_ratio", "dimension_ratio")
+    names = {"fine": "within_1_mm", "coarse": "within_5_mm", "count": "right_count"}
+    ends = [f"{names.get(name, name)}{end}" for name in estimates for end in ("", "_low", "_high")]
+    header = ("sweep", "level", "x", "method", "n_maps", "n_runs", "n_shapes", *ends)
+    rows = []
+    for table in tables:
+        for line in table.lines:
+            what = (table.sweep, line.level, line.x, line.method, line.n_maps, line.n_runs, line.n_shapes)
+            found: list[Estimate | None] = [getattr(line, name) for name in estimates]
+            numbers = [n for e in found for n in ((None,) * 3 if e is None else (e.value, e.low, e.high))]
+            rows.append((*what, *numbers, 1000 * line.center_rms, 1000 * line.dimension_rms, line.time))
+    return as_csv((*header, "center_rms_mm", "dimension_rms_mm", "computing_time_s"), rows)
