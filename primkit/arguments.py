@@ -17,11 +17,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+# The arrays that the whole library works on; shapes and units stand in the docstrings.
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Labels = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
 # 0.305 - 0.3 is a little more than 0.005: a value this much [m] beyond a limit that is included lies on it.
 ROUNDING = 1e-12
 
 
-def as_points(points: ArrayLike | Iterable[Any], name: str = "points") -> NDArray[np.float64]:
+def as_points(points: ArrayLike | Iterable[Any], name: str = "points") -> Floats:
     """Return points as an (N, 2) array of finite floats, or say in one sentence what is wrong.
 
     Parameters
@@ -56,7 +62,7 @@ def as_points(points: ArrayLike | Iterable[Any], name: str = "points") -> NDArra
     return _all_finite(array, name)
 
 
-def as_point(point: ArrayLike, name: str) -> NDArray[np.float64]:
+def as_point(point: ArrayLike, name: str) -> Floats:
     """Return one point as an array of two finite floats, or say in one sentence what is wrong.
 
     >>> as_point((1, 2), "center")
@@ -101,7 +107,7 @@ def as_count(value: Any, name: str, least: int = 1) -> int:
     return int(value)
 
 
-def as_poses(poses: ArrayLike) -> NDArray[np.float64]:
+def as_poses(poses: ArrayLike) -> Floats:
     """Return poses as a (P, 3) array of finite floats, or say in one sentence what is wrong.
 
     >>> as_poses((0, 0, 0)).shape
@@ -117,7 +123,7 @@ def as_poses(poses: ArrayLike) -> NDArray[np.float64]:
     return _all_finite(array, "poses")
 
 
-def _all_finite(array: NDArray[np.float64], name: str) -> NDArray[np.float64]:
+def _all_finite(array: NDArray[np.float64], name: str) -> Floats:
     """Return the array, or refuse it for its first row that is not finite."""
     finite = np.isfinite(array)
     if not finite.all():  # at once: row by row takes ten times as long
@@ -126,7 +132,7 @@ def _all_finite(array: NDArray[np.float64], name: str) -> NDArray[np.float64]:
     return array
 
 
-def _as_floats(values: Any) -> NDArray[np.float64]:
+def _as_floats(values: Any) -> Floats:
     """Return values as an array of floats; a TypeError, ValueError or OverflowError says that they are none."""
     array = np.asarray(values)
     if array.dtype.kind in "USc":

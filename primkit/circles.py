@@ -22,13 +22,12 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from .arguments import as_points
+from .arguments import Floats, as_points
 from .ransac import Model, run_ransac
 from .shapes import Circle
 
-Floats = NDArray[np.float64]
 Method = Literal["kasa", "pratt", "taubin", "geometric"]
 
 # Points whose circle is more than this many times wider than they are spread lie on a line, as far as one can tell.

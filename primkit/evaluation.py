@@ -27,15 +27,13 @@ from html import escape
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .arguments import ROUNDING, as_positive, check_type
+from .arguments import ROUNDING, Floats, as_positive, check_type
 from .measure import Detection
 from .paper import published_values
 from .shapes import Circle, Polygon, Shape
 from .world import World
 
-Floats = NDArray[np.float64]
 Protocol = Literal["fair", "paper"]
 
 SHAPE_WEIGHT, CENTER_WEIGHT, DIMENSION_WEIGHT = 0.4, 0.3, 0.3

@@ -26,11 +26,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import as_count, as_poses, as_positive, as_rng, check_type
+from .arguments import Floats, as_count, as_poses, as_positive, as_rng, check_type
 from .raycast import cast
 from .world import World
-
-Floats = NDArray[np.float64]
 
 BLOCK = 10_000  # scans that are worked on at a time: 8 MB of ranges
 

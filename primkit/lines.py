@@ -20,10 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import as_count, as_points, as_positive, as_rng
+from .arguments import Floats, as_count, as_points, as_positive, as_rng
 from .ransac import Consensus, Model, run_ransac
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

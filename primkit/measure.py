@@ -16,17 +16,15 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from .arguments import as_points, as_positive
+from .arguments import Floats, as_points, as_positive
 from .robust.candidates import candidates
 from .robust.choice import Choice
 from .robust.deviations import Certainty
 from .robust.evidence import seen_shares
 from .robust.scatter import LEAST_SPREAD
 from .shapes import Kind, Shape
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,14 +17,11 @@ Source: "Mapping of Primitives in Mobile Robotics Using Computer Vision", sectio
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .arguments import as_points
+from .arguments import Floats, as_points
 from .circles import find_circle
 from .shapes import Circle, Kind, Polygon, Shape
 from .world import PENTAGON
-
-Floats = NDArray[np.float64]
 
 
 def kind_by_lines(n_lines: int) -> Kind | None:

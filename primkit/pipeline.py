@@ -22,9 +22,9 @@ from functools import partial
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from .arguments import as_count, as_points, as_positive, as_rng, check_type
+from .arguments import Floats, as_count, as_points, as_positive, as_rng, check_type
 from .lines import LINE, find_lines
 from .measure import Detection, as_detection, detection
 from .paper import measure_as_published
@@ -33,7 +33,6 @@ from .robust.scatter import LEAST_SPREAD, SIGMAS, spread_across, spread_from_med
 from .segmentation import Grouping, check_count, segment
 from .steps import Steps
 
-Floats = NDArray[np.float64]
 Memory = dict[tuple[bytes, float, int, bool, bool], Group]  # groups as they were measured last, by their points
 
 SAME_SPREAD = 1.25  # fits are done anew when the spread comes out farther than this from what was supposed

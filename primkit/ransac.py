@@ -26,9 +26,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import ROUNDING, as_count, as_points, as_positive, as_rng, check_type
-
-Floats = NDArray[np.float64]
+from .arguments import ROUNDING, Floats, as_count, as_points, as_positive, as_rng, check_type
 
 BLOCK = 250_000  # residuals in one block of the matrix: 2 MB, about the size of a core's cache
 REFITS = 10  # refitting to the inliers settles within a few rounds; ten is a safe end

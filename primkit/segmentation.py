@@ -23,10 +23,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import ROUNDING, as_count, as_points, as_positive, as_rng
+from .arguments import ROUNDING, Floats, Labels, as_count, as_points, as_positive, as_rng
 
-Floats = NDArray[np.float64]
-Labels = NDArray[np.int64]
 Grouping = Literal["kmeans", "link"]
 
 # Neighbours on an outline lie a few millimetres apart, 2 cm where only distant poses saw it; shapes lie farther.

@@ -24,13 +24,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .arguments import short
+from .arguments import Floats, Labels, short
 from .lines import Line
 from .measure import Detection, detection
 from .shapes import Circle, Polygon
-
-Floats = NDArray[np.float64]
-Labels = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

@@ -17,15 +17,14 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..circles import fit_circle as library_fit
 from ..shapes import Circle
 from . import judges
 from .answer import Case, Check, Fault
 from .judges import as_circle, shown
 
-Floats = NDArray[np.float64]
 XYR = tuple[float, float, float]
 
 RANDOM_CASES = 200

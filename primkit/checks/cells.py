@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..grid import Grid
 from .answer import Case, Check, Fault
 from .judges import array, shown
 
-Floats = NDArray[np.float64]
 Cells = set[tuple[int, int]]
 
 RANDOM_CASES = 200

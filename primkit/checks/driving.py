@@ -19,13 +19,12 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..robot import AXLE, FASTEST, WHEEL, moved
 from . import judges
 from .answer import Case, Check, Fault
 
-Floats = NDArray[np.float64]
 Pose = tuple[float, float, float]
 
 RANDOM_CASES = 200

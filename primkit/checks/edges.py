@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments import ROUNDING
+from ..arguments import ROUNDING, Floats
 from ..lines import LINE
 from ..lines import fit_line as best_fit
 from ..ransac import run_ransac
@@ -25,7 +25,6 @@ from .answer import Case, Check, Fault
 from .judges import as_line, line, shown
 from .walls import EDGE, bands, clouds, pairs, scenes
 
-Floats = NDArray[np.float64]
 Pair = tuple[float, float]  # angle and offset of a line
 
 ENOUGH = 0.9  # of the inliers that the library's line has: another sample may miss a few at the wall's ends

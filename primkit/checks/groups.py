@@ -21,11 +21,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import Floats, Labels
 from .answer import Case, Check, Fault
 from .judges import _missing, array, number, shown
-
-Floats = NDArray[np.float64]
-Labels = NDArray[np.int64]
 
 RANDOM_CASES = 200
 EDGE = 1e-6  # m: cases in which rounding alone decides which of two centres is nearer are left out

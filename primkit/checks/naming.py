@@ -18,10 +18,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import Floats
 from .answer import Case, Check, Fault
 from .judges import array, number, shown
 
-Floats = NDArray[np.float64]
 Pair = tuple[float, float]
 
 RANDOM_CASES = 200

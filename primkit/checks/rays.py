@@ -15,12 +15,10 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arguments import Floats
 from .answer import Case, Check, Fault
 from .judges import number
-
-Floats = NDArray[np.float64]
 
 RANDOM_CASES = 200
 EDGE = 1e-6  # m: cases in which rounding alone decides between hit and miss are left out

@@ -16,16 +16,14 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arguments import ROUNDING
+from ..arguments import ROUNDING, Floats
 from ..evaluation import CENTER_WEIGHT, DIMENSION_WEIGHT, SHAPE_WEIGHT, match
 from ..shapes import Circle, Polygon, Shape
 from ..world import random_world
 from .answer import Check, Fault
 from .judges import CLOSE, number, shown
 
-Floats = NDArray[np.float64]
 Pairs = list[tuple[int, int]]
 
 RANDOM_CASES = 120

@@ -14,9 +14,8 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from ..arguments import Floats
 
 RANDOM_CASES = 200
 RANSAC_CASES = 24  # each is a few hundred trials of the student's own loop

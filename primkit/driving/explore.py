@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ..arguments import as_count, as_rng, check_type
+from ..arguments import Bools, Floats, as_count, as_rng, check_type
 from ..grid import Grid
 from ..lidar import Lidar, Scans, scan
 from ..measure import Detection
@@ -28,8 +28,6 @@ from .next_views import View, next_view, shown_from
 from .seen_map import EXPLAINED, SQUARE, SeenMap, open_outlines
 from .ways import Ways, forward, ways_from, wheels_along
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 Why = Literal["all is seen", "the rest cannot be seen", "out of scans"]
 
 MOST_SCANS = 60

@@ -43,13 +43,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arguments import check_type
+from ..arguments import Bools, Floats, Ints, check_type
 from ..grid import HALF, Grid
 from ..lidar import Lidar, Scans
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 BEFORE_A_HIT = 0.01  # m: what lies this near before a hit may be the same outline, seen with 2 mm of noise or grazing
 SHARPEST = np.radians(30)  # no corner of a shape is sharper

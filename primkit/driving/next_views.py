@@ -19,12 +19,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import Bools, Floats
 from ..lidar import Lidar
 from .seen_map import SQUARE
 from .ways import SPEED, Ways
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 EVERY = 4  # views lie on every fourth square, both ways
 SPARSE = 2  # every second beam is followed: it tells nearly as much

@@ -26,13 +26,11 @@ from zlib import crc32
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments import as_count, as_rng, check_type
+from ..arguments import Floats, as_count, as_rng, check_type
 from ..formats import SUITE_SEED, Route, paper_suite, scripted_drives
 from ..robot import AXLE, FASTEST, PERIOD, WHEEL, advance, clearance, moved, start_pose
 from ..shapes import Shape
 from ..world import World
-
-Floats = NDArray[np.float64]
 
 # What the driver wants.
 DISTANCE = (0.09, 0.13)  # m from an outline to the robot's middle; the LiDAR measures from 0.05 to 0.3 m

@@ -21,14 +21,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import Bools, Floats
 from ..lidar import Scans
 from ..measure import Detection
 from ..robot import BODY
 from ..robust.evidence import GAP
 from ..shapes import Shape
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 SQUARE = 0.01  # m: side of a square of the map
 # m: so far before a hit, squares' centres count as free: those of all squares that hold a piece of the outline are

@@ -17,10 +17,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments import as_count, as_positive
+from ..arguments import Floats, as_count, as_positive
 from ..world import World
-
-Floats = NDArray[np.float64]
 
 CLEARANCE = 0.04  # m: a little more than the robot's radius
 MARGIN = 0.10  # m: so far inside the board's edge the way stays: shapes are in the middle

@@ -17,11 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import Bools, Floats
 from ..robot import AXLE, BODY, CLEAR, FASTEST, PERIOD, WHEEL
 from .seen_map import SQUARE, SeenMap
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 Window = tuple[slice, slice]
 
 # m: the body's middle stays this far from the centre of every square that is not known to be free; what such a square

@@ -31,14 +31,12 @@ from math import isfinite
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ..arguments import as_point, as_points, as_poses, check_type, short
+from ..arguments import Floats, as_point, as_points, as_poses, check_type, short
 from ..lidar import Lidar, Scans
 from .files import StrPath, as_path, check_size, naming, read_whole, write_atomically
 from .values import numbers_in, parsed
-
-Floats = NDArray[np.float64]
 
 DRIVE_ENDINGS = (".jsonl",)
 # Most of an hour with ten scans of 100 beams a second if all of them hit something, several hours otherwise.

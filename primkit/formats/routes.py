@@ -14,15 +14,12 @@ import json
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arguments import as_points, as_poses, as_positive, check_type, short
+from ..arguments import Floats, as_points, as_poses, as_positive, check_type, short
 from ..robot import FASTEST, PERIOD, drive
 from ..world import World
 from .files import StrPath, as_path, check_size, naming, read_whole, write_atomically
 from .values import numbers_in, parsed
-
-Floats = NDArray[np.float64]
 
 ROUTE_ENDINGS = (".json",)
 ROUTE_LIMIT = 2 * 2**20  # bytes: hours of driving

@@ -17,14 +17,11 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from ..study.accuracy.table import COARSE, FINE, TRUTHS, AccuracyLine, AccuracyTable
 from ..study.estimate import Estimate
 from .look import BLACK, BLUE, GREEN, GREY, INK, ORANGE, PALE, PURPLE, VERMILION, check_type
 from .story import Picture, freeze, plain
-
-Floats = NDArray[np.float64]
 
 PANELS = ("noise", "shapes", "scans", "spurious")  # a sweep of two levels needs no picture
 TOLERANCES = (("coarse", COARSE), ("fine", FINE))

@@ -22,16 +22,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle as CirclePatch
 from numpy.typing import NDArray
 
-from ..arguments import as_count
+from ..arguments import Floats, Ints, as_count
 from ..formats import Drive
 from ..grid import Grid
 from ..robot import BODY
 from ..world import World
 from .look import BLUE, GREY, INK, PALE, VERMILION, check_type, count, draw_board, marks, patch, set_title
 from .story import Picture, freeze, plain
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 COLUMNS = 3
 FRAME = 2.5  # inches

@@ -18,8 +18,8 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..evaluation import Match, Report
 from ..measure import Detection
 from ..robust.evidence import GAP
@@ -41,8 +41,6 @@ from .look import (
     outlines,
     set_title,
 )
-
-Floats = NDArray[np.float64]
 
 DASHES = (0, (3, 2))
 

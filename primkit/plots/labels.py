@@ -24,10 +24,10 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..shapes import Circle, Shape
 from .look import GREY, KIND_INKS, at_each_size, letters, width_of
 
-Floats = NDArray[np.float64]
 Chosen = dict[int, tuple[int, float]]  # label: its place, and what that costs
 
 # Lengths are shares of the room's larger side, and so are costs: 0.01 is as bad as lying so much farther off.

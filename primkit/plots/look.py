@@ -24,11 +24,9 @@ from matplotlib.patches import Circle as CirclePatch
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.patches import Polygon as PolygonPatch
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..shapes import Circle, Kind, Shape
-
-Floats = NDArray[np.float64]
 
 # Okabe and Ito's colours; their yellow is too faint on white. The first four have a contrast of 3 and more to white.
 BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"

@@ -21,7 +21,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle as CirclePatch
 from numpy.typing import ArrayLike, NDArray
 
-from ..arguments import as_count, as_points, as_positive
+from ..arguments import Floats, as_count, as_points, as_positive
 from ..lidar import Lidar, Scans
 from ..raycast import cast_rays
 from ..shapes import KINDS, Circle, Shape
@@ -47,8 +47,6 @@ from .look import (
     set_title,
     width_of,
 )
-
-Floats = NDArray[np.float64]
 
 ROBOT_RADIUS = 0.037  # m: the e-puck's body
 SIGNS = 6  # larger markers on each cluster, so that it can be told from the others without colour

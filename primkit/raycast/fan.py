@@ -14,12 +14,9 @@ number to another, even across the seam, where bearings jump by 2 pi.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arguments import Floats, Ints
 from .near import runs
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 TURN = 2 * np.pi
 # A beam this close [rad] beside a corner still hits it: otherwise rounding could let it slip between two sides.

@@ -43,17 +43,14 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ..arguments import ROUNDING, as_poses, check_type
+from ..arguments import ROUNDING, Bools, Floats, Ints, as_poses, check_type
 from ..shapes import Circle, Polygon
 from ..world import World
 from .fan import CORNER_HIT, TURN, Fan
 from .near import Near
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 Hits = tuple[Ints, Floats, Ints]  # where in the table of ranges, how far; and the poses that lie in a shape
 
 # Poses are cast in blocks of at most so many pairs and beams: some MB, which stay in the cache, and which the system

@@ -14,10 +14,8 @@ Out: each (position, shape) with the shape in range: two index arrays, in any or
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from ..arguments import Floats, Ints
 
 # From this many shapes on, looking up a cell is faster than measuring the distance to all.
 CELLS_FROM = 24

@@ -16,9 +16,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arguments import as_rng
+from ..arguments import Floats, as_rng
 from ..circles import find_circle, nearer_circle
 from ..lines import Line
 from ..shapes import Circle
@@ -27,8 +26,6 @@ from .guess import guess_outlines, guess_rectangles, line_guesses, one_side_more
 from .outlines import Outlines, joined
 from .refine import refine_hard, refine_soft, truncated_cost
 from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
-
-Floats = NDArray[np.float64]
 
 LEAST_POINTS = 8  # fewer fix nothing: a pentagon alone has ten numbers
 MOST_RADIUS = 0.25  # m: a larger circle than a quarter of the board is a wall

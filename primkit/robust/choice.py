@@ -12,14 +12,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..circles import straightened
 from ..shapes import Circle, Shape
 from .candidates import candidates
 from .deviations import Certainty, certainty
 from .evidence import Candidate
 from .scatter import SIGMAS, noise_of
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

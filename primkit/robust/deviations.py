@@ -27,13 +27,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..shapes import Circle
 from .evidence import seen_shares
 from .outlines import Outlines
 from .refine import shares
 from .scatter import CELL, CELL_STD, SIGMAS
-
-Floats = NDArray[np.float64]
 
 # A side was seen when so many points lie on it, over such a length [m] and such a share of it, and not near a corner,
 # where they may as well belong to the neighbour: a line over a hidden side touches the last points of both neighbours.

@@ -22,15 +22,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..lines import Line
 from ..shapes import KINDS, Circle, Shape
 from .outlines import Outlines
 from .refine import shares
 from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
-
-Floats = NDArray[np.float64]
 
 GAP = 0.012  # m: a stretch of outline within this of a point counts as seen
 STEPS_PER_SIDE = 50  # a side is looked at in so many places, a circle in four times as many

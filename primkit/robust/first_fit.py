@@ -27,8 +27,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..circles import fit_circle
 from ..shapes import Circle
 from .candidates import BLURRED, CONTENDER, moved, polished, refined
@@ -38,8 +38,6 @@ from .outlines import Outlines, joined
 from .refine import refine_hard
 from .scatter import SIGMAS
 from .starts import Cut, best_cuts
-
-Floats = NDArray[np.float64]
 
 ENOUGH = 60  # points; fewer leave too much room for doubt
 ALL_AROUND = 0.9  # share of each side that must have been seen

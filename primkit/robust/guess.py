@@ -18,13 +18,11 @@ from __future__ import annotations
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..lines import Line, find_lines
 from .outlines import QUARTERS, Outlines, from_angle_order, joined
 from .refine import refit
-
-Floats = NDArray[np.float64]
 
 LINES_TRIED = 7  # five sides at most, and two for luck
 LINE_TRIALS = 200  # a side with an eighth of the points is drawn with 95 % certainty

@@ -26,9 +26,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..shapes import Polygon
-
-Floats = NDArray[np.float64]
 
 # What a board can hold, and a sensor can tell: sides of at least 1.5 cm, corners that bend by 15 to 160 degrees.
 LEAST_SIDE = 0.015

@@ -21,13 +21,11 @@ algorithm".
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtr
 
+from ..arguments import Floats
 from .outlines import Outlines
 from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, scatter
-
-Floats = NDArray[np.float64]
 
 # A side that has fewer points than this (shares count in part) has nothing to be fitted to, and stays.
 LEAST_SHARE = 2.0

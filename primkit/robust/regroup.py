@@ -26,8 +26,8 @@ from functools import cached_property, partial
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..segmentation import LEAST_GROUP, kmeans
 from ..shapes import Polygon, Shape
 from .candidates import candidates, explained_again
@@ -36,7 +36,6 @@ from .evidence import Candidate, joint_cost, seen_shares
 from .first_fit import at_a_glance, at_another_glance
 from .scatter import NOWHERE, SIGMAS
 
-Floats = NDArray[np.float64]
 Explain = Callable[[Floats], "Group"]
 
 CLOSED = 0.9  # an outline seen on nine tenths of its length is no piece of another

@@ -23,14 +23,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ..arguments import as_points
+from ..arguments import Floats, as_points
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
-Floats = NDArray[np.float64]
 
 CELL = 0.001  # m: side of the grid's cells, as in the paper; all that follows supposes points on such a grid
 CELL_STD = CELL / 12**0.5  # m: a cell's centre lies evenly within half a cell of the point

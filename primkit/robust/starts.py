@@ -24,9 +24,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import Floats
 from .outlines import QUARTERS, Outlines, from_angle_order
-
-Floats = NDArray[np.float64]
 
 KNOTS = 60  # cuts lie between two of so many places along the outline, a centimetre apart or less
 FEWEST, MOST = 3, 5  # sides

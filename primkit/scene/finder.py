@@ -24,14 +24,11 @@ from dataclasses import dataclass
 from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arguments import Bools, Floats, Ints
 from ..measure import Detection
 from ..pipeline import Memory, find_shapes
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 P = ParamSpec("P")
 T = TypeVar("T")
 

@@ -16,17 +16,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arguments import Bools, Floats
 from ..driving.moving_grid import MovingGrid
 from ..measure import Detection
 from ..robot import CLEAR, clearance
 from ..shapes import Shape
 from ..world import World, gap_between
 from .page import share_seen
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 NEAREST, FARTHEST = 0.08, 0.2  # m: how far a shape is moved
 TURNED = 0.5  # rad: by how much it is turned at most, either way

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..driving.seen_map import OUTLINE_STEP
 from ..lidar import Lidar
 from ..measure import Detection
@@ -23,7 +24,6 @@ from ..robot import BODY
 from ..robust.evidence import GAP
 from ..shapes import Circle, Shape
 
-Floats = NDArray[np.float64]
 Message = dict[str, Any]
 
 COLORS = {"ink": INK, "grey": GREY, "pale": PALE, "beam": SKY, "hit": ORANGE}

@@ -23,7 +23,7 @@ import anywidget
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments import check_type
+from ..arguments import Ints, check_type
 from ..evaluation import evaluate
 from ..formats import Drive
 from ..grid import Grid
@@ -31,8 +31,6 @@ from ..measure import Detection
 from ..pipeline import Memory, find_shapes
 from ..world import World
 from .page import FAR, Message, board_and_look, drawn, page, ring_of, tenths
-
-Ints = NDArray[np.int64]
 
 GROWN = 1.2  # so many times the cells are worth another look
 NO_HIT = -1

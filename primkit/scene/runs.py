@@ -16,9 +16,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from html import escape
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ..arguments import Floats
 from ..driving import explore
 from ..evaluation import evaluate
 from ..grid import Grid
@@ -26,8 +24,6 @@ from ..lidar import Lidar, scan
 from ..pipeline import find_shapes
 from ..robot import teleport_poses, waypoints
 from ..world import World
-
-Floats = NDArray[np.float64]
 
 HEADER = ("", "scans", "robot time", "found", "score")
 

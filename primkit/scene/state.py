@@ -32,7 +32,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arguments import check_type
+from ..arguments import Ints, check_type
 from ..driving.moving_grid import MovingGrid
 from ..driving.seen_map import EXPLAINED, SeenMap
 from ..evaluation import evaluate
@@ -46,9 +46,6 @@ from .finder import MOST, AtOnce, Finder, thinned
 from .keys import STANDING
 from .moved_shape import left_within, with_one_moved
 from .runs import Comparison, Run, by_exploring, from_waypoints
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 NEWS = 0.01  # when this share of the cells has come or gone since the last look, it is time for another
 FAR = 1 << 31  # cells: farther apart than any two on a board

@@ -27,16 +27,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arguments import Floats, Ints
 from ..grid import Grid
 from ..lidar import Lidar, Scans
 from ..raycast import cast_rays
 from ..shapes import Circle, Polygon, Shape
 from ..world import World
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 NOBODY = -1  # the owner of a point that comes from nowhere
 SIGMAS = 6.0  # a reading farther than this from the true range, in standard deviations, is no noise

@@ -14,15 +14,11 @@ The truth decides, not the method: what counts are the hits that a sensor withou
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ..arguments import Floats
 from ..lidar import Lidar, Scans
 from ..shapes import Shape
 from ..world import World
 from .oracle import exact_ranges, hit_sides
-
-Floats = NDArray[np.float64]
 
 NEAR = 0.012  # m: a stretch of outline within this of a hit was seen
 

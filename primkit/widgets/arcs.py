@@ -13,15 +13,14 @@ from collections.abc import Mapping
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..circles import fit_circle
 from ..plots.look import BLACK, BLUE, GREY, INK, ORANGE, PALE, PURPLE, VERMILION
 from ..shapes import Circle
 from .drawing import Frame, picture, square_frame
 from .slider import Choice, Explorer, Picture, Slider, explore
 
-Floats = NDArray[np.float64]
 XYR = tuple[float, float, float]
 
 TRUTH = Circle((0.0, 0.0), 0.1)  # metres

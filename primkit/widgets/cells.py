@@ -9,8 +9,9 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arguments import Floats
 from ..circles import fit_circle
 from ..grid import Grid
 from ..lidar import Lidar, Scans, scan
@@ -19,8 +20,6 @@ from ..shapes import Circle
 from ..world import World
 from .drawing import Frame, path, picture, square_frame
 from .slider import Choice, Explorer, Picture, Slider, explore
-
-Floats = NDArray[np.float64]
 
 TRUTH = Circle((0.0036, -0.0047), 0.06)  # not in the middle of a cell, nor on a border
 ROUND = 0.13  # m: the robot drives round the circle at this distance from its centre

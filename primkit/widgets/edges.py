@@ -12,8 +12,9 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arguments import Floats
 from ..grid import Grid
 from ..lidar import Lidar, scan
 from ..lines import LINE, Line
@@ -27,7 +28,6 @@ from .slider import Explorer, Picture, Slider, explore
 
 __all__ = ["edges", "draw_edges", "diagram", "show_lines", "what_it_says"]
 
-Floats = NDArray[np.float64]
 
 RECTANGLE = Polygon([(-0.13, -0.09), (0.13, -0.09), (0.13, 0.09), (-0.13, 0.09)]).moved((0.02, 0.01), 0.3)
 MOST_TRIALS = 60

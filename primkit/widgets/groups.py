@@ -9,8 +9,8 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arguments import Floats, Labels
 from ..grid import Grid
 from ..lidar import scan
 from ..plots.look import BLACK, BLUE, CLUSTER_COLORS, GREY, INK, ORANGE, PALE
@@ -19,9 +19,6 @@ from ..shapes import Circle, Polygon
 from ..world import World, random_world
 from .drawing import Frame, board_frame, picture, side_by_side
 from .slider import Choice, Explorer, Picture, Slider, explore
-
-Floats = NDArray[np.float64]
-Labels = NDArray[np.int64]
 
 FOUR, LONG, NEAR = "four shapes", "long and small", "3 cm apart"
 RANDOM, SPREAD = "random points", "k-means++"

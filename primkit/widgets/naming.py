@@ -14,8 +14,8 @@ from functools import cache
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..circles import fit_circle
 from ..grid import Grid
 from ..lidar import Lidar, scan
@@ -28,8 +28,6 @@ from ..shapes import Circle, Kind, Polygon, Shape
 from ..world import PENTAGON, World
 from .drawing import Frame, picture
 from .slider import Choice, Explorer, Picture, Slider, explore
-
-Floats = NDArray[np.float64]
 
 FAIR, FREE = "ln N a number", "nothing"
 SURE = 10.0  # a margin above this is very strong (Kass and Raftery, 1995)

@@ -13,9 +13,8 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arguments import ROUNDING
+from ..arguments import ROUNDING, Floats
 from ..evaluation import CENTER_WEIGHT, GATE, SHAPE_WEIGHT, evaluate
 from ..formats import paper_suite
 from ..lidar import Lidar
@@ -26,7 +25,6 @@ from ..world import World
 from .drawing import Frame, picture, side_by_side
 from .slider import Choice, Explorer, Picture, Slider, explore
 
-Floats = NDArray[np.float64]
 Weights = tuple[float, float, float]  # of shape, centre and dimensions; their sum is 1
 
 # A fifth of the published trials: on these maps the kinds are the same ones, and the scores within 5 mm too.

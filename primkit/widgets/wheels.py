@@ -12,14 +12,12 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..plots.look import BLUE, GREY, INK, ORANGE, PALE, VERMILION
 from ..robot import AXLE, WHEEL, moved
 from .drawing import Frame, board_frame, picture
 from .slider import Explorer, Picture, Slider, explore
-
-Floats = NDArray[np.float64]
 
 SIZE = 1.0  # m: side of the board
 START = np.array([0.0, -0.1, np.pi / 2])  # x [m], y [m], heading [rad]

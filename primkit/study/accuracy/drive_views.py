@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arguments import Bools, Floats
 from ...driving.wander import wander
 from ...evaluation import match
 from ...lidar import Lidar, Scans
@@ -29,9 +30,6 @@ from ..experiment import Experiment, run
 from ..oracle import exact_ranges, hit_sides
 from ..seen_shares import share_seen
 from .sweeps import UNTUNED, roomy_world
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 N_SHAPES = 4
 ROOM = 0.10  # m: gap between shapes, wide enough to drive through

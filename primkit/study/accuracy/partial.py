@@ -19,16 +19,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arguments import ROUNDING, as_count, as_positive
+from ...arguments import ROUNDING, Floats, as_count, as_positive
 from ..estimate import Estimate, Z, pooled_share
 from ..many import checked_jobs, in_parallel
 from ..table import as_block, as_csv, as_html, wrapped
 from .drive_views import N_SCANS, N_SHAPES, ROOM, View, views_from
 from .sweeps import UNTUNED
-
-Floats = NDArray[np.float64]
 
 NOISES = (0.0, 0.001, 0.002, 0.005)  # m
 TOLERANCE = 0.005  # m

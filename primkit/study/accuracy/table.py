@@ -20,9 +20,8 @@ from itertools import groupby
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arguments import as_count
+from ...arguments import Floats, as_count
 from ...formats import StrPath
 from ...pipeline import Settings
 from ..estimate import Estimate, mean_of, ratio_of, share_of
@@ -31,8 +30,6 @@ from ..oracle import ORACLE, Oracle
 from ..row import Row
 from ..table import as_block, as_csv, as_html, wrapped
 from .sweeps import REMEDIES, SWEEPS, UNTUNED, Level, experiments, n_runs
-
-Floats = NDArray[np.float64]
 
 FINE, COARSE = 0.001, 0.005  # m: the two tolerances
 TRUTHS = "oracle"  # its name among the methods
