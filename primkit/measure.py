@@ -22,8 +22,8 @@ from .arguments import Floats, as_points, as_positive
 from .robust.candidates import candidates
 from .robust.choice import Choice
 from .robust.deviations import Certainty
-from .robust.evidence import seen_shares
 from .robust.scatter import LEAST_SPREAD
+from .seen import seen_shares
 from .shapes import Kind, Shape
 
 

@@ -21,7 +21,7 @@ PACKAGE = ROOT / "primkit"
 ORDER = (
     "arguments",
     *("shapes", "world", "robot", "raycast", "lidar", "grid"),
-    *("segmentation", "ransac", "lines", "circles"),
+    *("segmentation", "ransac", "lines", "circles", "seen"),
     *("robust", "measure", "paper", "steps", "pipeline", "evaluation"),
     *("formats", "driving", "study", "plots", "widgets", "scene", "checks", "course"),
     *("__init__", "commands", "__main__"),

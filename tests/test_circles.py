@@ -13,7 +13,7 @@ from scipy.optimize import least_squares
 import primkit as pk
 from primkit.circles import CIRCLE, find_circle, fit_circle, nearer_circle, straightened
 from primkit.ransac import draw_samples
-from primkit.robust.evidence import seen_shares
+from primkit.seen import seen_shares
 from primkit.shapes import Circle
 from tests.helpers import exactly
 

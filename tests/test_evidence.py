@@ -7,7 +7,7 @@ import pytest
 
 import primkit as pk
 from primkit.robust.candidates import candidates
-from primkit.robust.evidence import UNSEEN_COST, _cost, _length_cost, joint_cost, judged, judged_wall, seen_shares
+from primkit.robust.evidence import UNSEEN_COST, _cost, _length_cost, joint_cost, judged, judged_wall
 from primkit.robust.scatter import LEAST_SPREAD, NOWHERE, spread_across
 from tests.test_outlines import outline_of
 
@@ -89,12 +89,3 @@ def test_under_much_noise_no_kind_is_preferred(kind):
         points = seen_by_beams(shape, 140, 0.01, rng)
         named[candidates(points, spread_across(0.01), rng=0)[0].kind] += 1
     assert named[kind] >= 24, named
-
-
-def test_seen_shares_by_hand():
-    square = pk.Polygon([(0, 0), (0.3, 0), (0.3, 0.3), (0, 0.3)])
-    assert seen_shares(square, np.empty((0, 2))) == (0.0,) * 4
-    below = np.column_stack([np.linspace(0, 0.15, 50), np.zeros(50)])
-    assert seen_shares(square, below)[0] == pytest.approx(0.54, abs=0.03)
-    half = pk.Circle((0, 0), 0.1).outline(100)[:50]
-    assert seen_shares(pk.Circle((0, 0), 0.1), half)[0] == pytest.approx(0.53, abs=0.03)

@@ -25,7 +25,7 @@ from ..arguments import Bools, Floats
 from ..lidar import Scans
 from ..measure import Detection
 from ..robot import BODY
-from ..robust.evidence import GAP
+from ..seen import is_seen
 from ..shapes import Shape
 
 SQUARE = 0.01  # m: side of a square of the map
@@ -141,10 +141,8 @@ def open_outlines(found: list[Detection]) -> Floats:
 
     Shape (N, 2), metres. Points that lie near the outline, but not on it, close nothing: the shape may be another.
     """
-    from scipy.spatial import cKDTree
-
     open_ = [np.empty((0, 2))]
     for one in found:
         places = one.shape.outline(max(8, int(one.shape.perimeter / OUTLINE_STEP)))
-        open_.append(places[cKDTree(one.points).query(places)[0] > GAP])
+        open_.append(places[~is_seen(places, one.points)])
     return np.vstack(open_)

@@ -22,7 +22,7 @@ from matplotlib.patches import Patch
 from ..arguments import Floats
 from ..evaluation import Match, Report
 from ..measure import Detection
-from ..robust.evidence import GAP
+from ..seen import is_seen
 from ..shapes import Circle, Polygon, Shape
 from ..world import World
 from .labels import write_labels
@@ -108,8 +108,6 @@ def _truth(world: World | None, report: Report | None) -> tuple[Shape, ...]:
 
 def _draw_outline(ax: Axes, shape: Shape, points: Floats | None) -> None:
     """Draw a found shape: its outline, dashed where none of the points lies near, its corners and its centre."""
-    from scipy.spatial import cKDTree
-
     color = KIND_COLORS[shape.kind]
     corners = shape.outline(240) if isinstance(shape, Circle) else shape.vertices
     ring = np.vstack([corners, corners[:1]])
@@ -117,9 +115,8 @@ def _draw_outline(ax: Axes, shape: Shape, points: Floats | None) -> None:
         ring = np.vstack([np.linspace(a, b, 60) for a, b in pairwise(ring)])
         ax.plot(*corners.T, "o", color="white", markeredgecolor=color, markersize=marks(ax, 4.5), zorder=4)
     if points is not None:
-        far = cKDTree(points).query(ring)[0] > GAP if len(points) else np.ones(len(ring), dtype=bool)
         ax.plot(*ring.T, color=color, linewidth=1.2, linestyle=DASHES, zorder=3)
-        ring = np.where(far[:, None], np.nan, ring)
+        ring = np.where(is_seen(ring, points)[:, None], ring, np.nan)
     ax.plot(*ring.T, color=color, linewidth=2, solid_capstyle="butt", zorder=3)
     draw_center(ax, shape)
 

@@ -20,8 +20,9 @@ import numpy as np
 from ..arguments import Floats, as_rng
 from ..circles import find_circle, nearer_circle
 from ..lines import Line
+from ..seen import REACH
 from ..shapes import Circle
-from .evidence import GAP, Candidate, judged, judged_wall
+from .evidence import Candidate, judged, judged_wall
 from .guess import guess_outlines, guess_rectangles, line_guesses, one_side_more, ransac_lines
 from .outlines import Outlines, joined
 from .refine import refine_hard, refine_soft, truncated_cost
@@ -182,7 +183,7 @@ def _length_along(points: Floats, line: Line, reach: float) -> float:
 
 def _unless_short(candidate: Candidate, circle: Circle) -> Candidate | None:
     """Return the candidate, or None when too short an arc of its circle was seen to tell the radius."""
-    ends = 2 * GAP if candidate.length < circle.perimeter * (1 - 1e-9) else 0.0  # an arc looks longer by this
+    ends = 2 * REACH if candidate.length < circle.perimeter * (1 - 1e-9) else 0.0  # an arc looks longer by this
     return candidate if (candidate.length - ends) / circle.radius >= LEAST_ARC else None
 
 

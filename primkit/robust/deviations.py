@@ -28,8 +28,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import Floats
+from ..seen import seen_shares
 from ..shapes import Circle
-from .evidence import seen_shares
 from .outlines import Outlines
 from .refine import shares
 from .scatter import CELL, CELL_STD, SIGMAS

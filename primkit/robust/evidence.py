@@ -25,14 +25,11 @@ import numpy as np
 
 from ..arguments import Floats
 from ..lines import Line
+from ..seen import PLACES_PER_SIDE, REACH, places_between, shares_of
 from ..shapes import KINDS, Circle, Shape
 from .outlines import Outlines
 from .refine import shares
 from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
-
-GAP = 0.012  # m: a stretch of outline within this of a point counts as seen
-STEPS_PER_SIDE = 50  # a side is looked at in so many places, a circle in four times as many
-STEPS = (np.arange(STEPS_PER_SIDE) + 0.5)[:, None] / STEPS_PER_SIDE
 
 # What is supposed before the points are looked at. Each number of a shape is known to about a centimetre. An outline
 # is seen nearly all around: each metre that was not seen is as unlikely as one in e^40. And four sides without right
@@ -108,18 +105,18 @@ def judged(points: Floats, figure: Circle | Outlines, spread: float, *, square: 
     """
     if isinstance(figure, Circle):
         lengths, fitted = np.array([figure.perimeter]), OF_CIRCLE
-        places = _places(figure)
+        places = figure.outline(4 * PLACES_PER_SIDE)[None]
         distance = figure.signed_distance(points)
         on_it, log_likelihood = _along_smooth(distance, spread)
     else:
         corners, after = figure.ends()
         lengths, k = np.hypot(*(after - corners)[0].T), corners.shape[1]
-        places = _between(corners[0], after[0])
+        places = places_between(corners[0], after[0])
         fitted = OF_SQUARE if square else OF_FREE_SIDES[k]
         distance = figure.distances(points)[0].max(axis=1)
         share, _, each = shares(points, figure, spread)
         on_it, log_likelihood = float(share.sum()), float(each[0])
-    seen = _shares_near(places, points[np.abs(distance) <= SIGMAS * spread], GAP)
+    seen = shares_of(places, points[np.abs(distance) <= SIGMAS * spread])
     length = float(lengths @ np.array(seen))
     cost = _cost(log_likelihood, fitted, len(points), spread) + _length_cost(on_it, length)
     cost += UNSEEN_COST * float(lengths.sum() - length)
@@ -155,41 +152,6 @@ def joint_cost(candidates: Sequence[Candidate]) -> float:
     return sum(c.cost for c in candidates) + together
 
 
-def seen_shares(shape: Shape, points: Floats, gap: float = GAP) -> tuple[float, ...]:
-    """Return the share of each side, or of the whole circle, that lies within ``gap`` metres of a point.
-
-    Examples
-    --------
-    >>> from primkit.shapes import Polygon
-    >>> square = Polygon([(0, 0), (0.1, 0), (0.1, 0.1), (0, 0.1)])
-    >>> [round(share, 1) for share in seen_shares(square, np.array([(0.0, 0.05), (0.05, 0.0)]))]
-    [0.2, 0.0, 0.0, 0.2]
-    """
-    return _shares_near(_places(shape), points, gap)
-
-
-def _places(shape: Shape) -> Floats:
-    """Return where a shape is looked at: places on each of its sides, shape (K, M, 2); a circle has one side."""
-    if isinstance(shape, Circle):
-        return shape.outline(4 * STEPS_PER_SIDE)[None]
-    return _between(shape.vertices, shape.vertices + shape.edges)
-
-
-def _between(begin: Floats, end: Floats) -> Floats:
-    """Return places along K sides, shape (K, 2) each for their ends -> (K, STEPS_PER_SIDE, 2)."""
-    return begin[:, None] + STEPS * (end - begin)[:, None]
-
-
-def _shares_near(places: Floats, points: Floats, gap: float) -> tuple[float, ...]:
-    """Return of each row of places, shape (K, M, 2), the share that lies within ``gap`` metres of a point."""
-    from scipy.spatial import cKDTree
-
-    if len(points) == 0:
-        return (0.0,) * len(places)
-    nearest, _ = cKDTree(points).query(places)
-    return tuple((np.count_nonzero(nearest <= gap, axis=1) / places.shape[1]).tolist())
-
-
 def _along_smooth(distance: Floats, spread: float) -> tuple[float, float]:
     """Return how many points lie on an outline without corners, and the logarithm of how likely they all are.
 
@@ -207,4 +169,4 @@ def _cost(log_likelihood: float, fitted: Floats, n_points: int, spread: float) -
 
 def _length_cost(n_on: float, length: float) -> float:
     """Return what is added for n points spread evenly over ``length`` metres, and not over ``OUTLINE_LENGTH``."""
-    return float(2 * n_on * np.log(max(length, GAP) / OUTLINE_LENGTH))
+    return float(2 * n_on * np.log(max(length, REACH) / OUTLINE_LENGTH))

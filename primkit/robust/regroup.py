@@ -28,11 +28,12 @@ from itertools import combinations
 import numpy as np
 
 from ..arguments import Floats
+from ..seen import seen_shares
 from ..segmentation import LEAST_GROUP, kmeans
 from ..shapes import Polygon, Shape
 from .candidates import candidates, explained_again
 from .choice import Choice
-from .evidence import Candidate, joint_cost, seen_shares
+from .evidence import Candidate, joint_cost
 from .first_fit import at_a_glance, at_another_glance
 from .scatter import NOWHERE, SIGMAS
 

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arguments import Floats
 from ..driving.seen_map import OUTLINE_STEP
@@ -21,7 +20,7 @@ from ..lidar import Lidar
 from ..measure import Detection
 from ..plots.look import GREY, INK, KIND_COLORS, KIND_INKS, ORANGE, PALE, SKY
 from ..robot import BODY
-from ..robust.evidence import GAP
+from ..seen import is_seen
 from ..shapes import Circle, Shape
 
 Message = dict[str, Any]
@@ -61,7 +60,7 @@ def drawn(one: Detection) -> Message:
     ('circle, radius 100 mm', [True, False, True])
     """
     ring = ring_of(one.shape)
-    seen = _seen(ring, one.points)
+    seen = is_seen(ring, one.points)
     stretches, start = [], 0
     for end in range(1, len(ring)):
         if end == len(ring) - 1 or seen[end] != seen[start]:
@@ -85,17 +84,9 @@ def ring_of(shape: Shape) -> Floats:
     return np.vstack([ring, ring[:1]])
 
 
-def _seen(places: Floats, points: Floats) -> NDArray[np.bool_]:
-    """Tell which places on an outline have a point of their own near them, shape (N,)."""
-    from scipy.spatial import cKDTree
-
-    near: NDArray[np.bool_] = cKDTree(points).query(places)[0] <= GAP
-    return near
-
-
 def share_seen(one: Detection) -> float:
     """Return how much of a shape's outline has points of its own near it, 0 to 1."""
-    return float(_seen(ring_of(one.shape), one.points).mean())
+    return float(is_seen(ring_of(one.shape), one.points).mean())
 
 
 def _name(one: Detection) -> str:

@@ -16,11 +16,10 @@ from __future__ import annotations
 
 from ..arguments import Floats
 from ..lidar import Lidar, Scans
+from ..seen import is_seen
 from ..shapes import Shape
 from ..world import World
 from .oracle import exact_ranges, hit_sides
-
-NEAR = 0.012  # m: a stretch of outline within this of a hit was seen
 
 
 def shares_seen(world: World, scans: Scans, lidar: Lidar) -> tuple[float, ...]:
@@ -38,8 +37,4 @@ def share_seen(shape: Shape, hits: Floats) -> float:
     >>> share_seen(Circle((0, 0), 0.05), np.empty((0, 2)))
     0.0
     """
-    from scipy.spatial import cKDTree
-
-    if len(hits) == 0:
-        return 0.0
-    return float((cKDTree(hits).query(shape.outline(400))[0] <= NEAR).mean())
+    return float(is_seen(shape.outline(400), hits).mean())

@@ -20,10 +20,10 @@ from ..circles import fit_circle
 from ..grid import Grid
 from ..lidar import Lidar, scan
 from ..plots.look import BLUE, GREY, INK, KIND_COLORS, ORANGE, PALE, VERMILION
-from ..robust.evidence import GAP, seen_shares
 from ..robust.outlines import Outlines, from_angle_order, joined
 from ..robust.refine import refine_hard
 from ..robust.scatter import spread_across
+from ..seen import is_seen, seen_shares
 from ..shapes import Circle, Kind, Polygon, Shape
 from ..world import PENTAGON, World
 from .drawing import Frame, picture
@@ -187,9 +187,7 @@ def _closest(points: Floats, guess: Outlines, *, square: bool = False) -> Outlin
 
 def _outline(shape: Shape, points: Floats) -> list[str]:
     """Draw the chosen outline, dashed where no point lies near; a side that was hardly seen has a question mark."""
-    from scipy.spatial import cKDTree
-
-    color, marks, near = KIND_COLORS[shape.kind], [], cKDTree(points)
+    color, marks = KIND_COLORS[shape.kind], []
     if isinstance(shape, Circle):
         ring = shape.outline(4 * STEPS)
         stretches = np.stack([ring, np.roll(ring, -1, axis=0)], axis=1)
@@ -200,7 +198,7 @@ def _outline(shape: Shape, points: Floats) -> list[str]:
         middles, shares = shape.vertices + shape.edges / 2, seen_shares(shape, points)
         hidden = [middle for middle, share in zip(middles, shares, strict=True) if share < HARDLY]
         marks = [BARS.text(middle, "?", VERMILION, "middle", (0, 6), 18) for middle in hidden]
-    seen = near.query(stretches.mean(axis=1))[0] <= GAP
+    seen = is_seen(stretches.mean(axis=1), points)
     dashes = np.flatnonzero(~seen)[::2]
     starts, ends = stretches[:, 0], stretches[:, 1]
     parts = [BARS.segments(starts[rows], ends[rows], color, 2.5) for rows in (np.flatnonzero(seen), dashes)]
