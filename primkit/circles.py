@@ -34,7 +34,7 @@ Method = Literal["kasa", "pratt", "taubin", "geometric"]
 FLAT = 1e4
 GRAZING, MOST_GRAZING = 6.0, 30.0  # how much grazing beams shrink an arc: see ``straightened``
 FINEST = 1e-12  # keeps what is divided by above zero
-STEPS = 50  # Gauss-Newton settles within five steps at 1 % noise, within some fifteen at 10 %
+GAUSS_NEWTON_STEPS = 50  # Gauss-Newton settles within five steps at 1 % noise, within some fifteen at 10 %
 
 
 def fit_circle(points: ArrayLike, method: Method = "geometric", *, weights: ArrayLike | None = None) -> Circle | None:
@@ -180,16 +180,11 @@ def nearer_circle(circle: Circle, points: Floats, weights: Floats) -> Circle | N
     weights : array, shape (N,)
         How much each point counts.
     """
-    x, y = (points - circle.center).T
-    distance = np.maximum(np.hypot(x, y), FINEST)
-    slope = np.array([x / distance, y / distance, np.ones_like(x)])  # how the distances fall as the numbers grow
-    weighted = slope * weights
-    try:
-        step = np.linalg.solve(weighted @ slope.T, weighted @ (distance - circle.radius))
-    except np.linalg.LinAlgError:  # too few points have any weight
+    x, y = points.T
+    params = _nearer(x, y, weights, np.array([*circle.center, circle.radius]))
+    if params is None or not np.isfinite(params).all() or params[2] <= 0:
         return None
-    radius = circle.radius + float(step[2])
-    return Circle(circle.center + step[:2], radius) if np.isfinite(step).all() and radius > 0 else None
+    return Circle(params[:2], float(params[2]))
 
 
 def _as_weights(weights: ArrayLike | None, n: int) -> Floats:
@@ -248,17 +243,32 @@ def _from_conic(p: Floats) -> Floats | None:
 
 
 def _polished(x: Floats, y: Floats, w: Floats, params: Floats) -> Floats:
-    """Minimise the squared distances to the circle by Gauss-Newton, from a good start on, shape (3,)."""
-    root = np.sqrt(w)
-    for _ in range(STEPS):
-        dx, dy = x - params[0], y - params[1]
-        distance = np.maximum(np.hypot(dx, dy), 1e-12)
-        slope = np.column_stack([-dx / distance, -dy / distance, -np.ones_like(x)])
-        step = np.linalg.lstsq(slope * root[:, None], -(distance - params[2]) * root, rcond=None)[0]
-        params = params + step
-        if np.abs(step).max() < 1e-12 or params[2] > FLAT:
+    """Minimise the squared distances to the circle, from a good start on, shape (3,)."""
+    for _ in range(GAUSS_NEWTON_STEPS):
+        nearer = _nearer(x, y, w, params)
+        if nearer is None or nearer[2] > FLAT:
+            break
+        settled, params = np.abs(nearer - params).max() < 1e-12, nearer
+        if settled:
             break
     return params
+
+
+def _nearer(x: Floats, y: Floats, w: Floats, params: Floats) -> Floats | None:
+    """Return (x, y, radius) after one step of Gauss and Newton, shape (3,); None where the points fix none.
+
+    A point at the distance d_i from the centre (a, b) has the residual d_i - r, which falls by J s to first order when
+    the numbers grow by s; the rows of J are ((x_i - a) / d_i, (y_i - b) / d_i, 1). So J' W J s = J' W (d - r).
+    """
+    dx, dy = x - params[0], y - params[1]
+    distance = np.maximum(np.hypot(dx, dy), FINEST)
+    slope = np.array([dx / distance, dy / distance, np.ones_like(dx)])
+    weighted = slope * w
+    try:
+        step: Floats = np.linalg.solve(weighted @ slope.T, weighted @ (distance - params[2]))
+    except np.linalg.LinAlgError:  # too few points have any weight
+        return None
+    return params + step
 
 
 # --- the circle as RANSAC's model: parameters (x, y, radius) ----------------------------------------------------

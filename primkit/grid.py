@@ -20,9 +20,9 @@ Source: the paper's section 3.2, "LiDAR Data Acquisition and Grid Representation
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from .arguments import as_points, as_positive
+from .arguments import Floats, Ints, as_points, as_positive
 from .lidar import Scans
 
 # 0.043 / 0.001 is 42.99999999999999 and must be cell 43: a point this close (in cells) below a border is on it.
@@ -64,20 +64,18 @@ class Grid:
             If a point is not finite or lies too far out for the grid; the grid then stays as it was.
         """
         points = seen.points() if isinstance(seen, Scans) else as_points(seen)
-        cells = self.to_cells(points)
-        keys = (cells[:, 0] + HALF) * (2 * HALF) + (cells[:, 1] + HALF)
-        self._keys = np.union1d(self._keys, keys)
+        self._keys = np.union1d(self._keys, as_keys(self.to_cells(points)))
 
     @property
-    def cells(self) -> NDArray[np.int64]:
+    def cells(self) -> Ints:
         """Indices of the occupied cells, shape (N, 2), sorted: the order of adding leaves no trace."""
-        return np.column_stack(np.divmod(self._keys, 2 * HALF)) - HALF
+        return as_cells(self._keys)
 
-    def points(self) -> NDArray[np.float64]:
+    def points(self) -> Floats:
         """Return the centres of the occupied cells, shape (N, 2), metres, in the order of ``cells``."""
         return self.to_points(self.cells)
 
-    def to_cells(self, points: ArrayLike) -> NDArray[np.int64]:
+    def to_cells(self, points: ArrayLike) -> Ints:
         """Return the cell that each point lies in, shape (N, 2).
 
         Examples
@@ -92,7 +90,7 @@ class Grid:
             raise ValueError(f"points must lie within {reach:g} m of the origin, got one {farthest:g} m out")
         return cells.astype(np.int64)
 
-    def to_points(self, cells: ArrayLike) -> NDArray[np.float64]:
+    def to_points(self, cells: ArrayLike) -> Floats:
         """Return the centre of each cell, shape (N, 2), metres.
 
         Examples
@@ -107,3 +105,17 @@ class Grid:
 
     def __repr__(self) -> str:
         return f"Grid(resolution={self.resolution:g}): {len(self)} occupied cells"
+
+
+def as_keys(cells: Ints) -> Ints:
+    """Return each cell, shape (N, 2), as one whole number that sorts like its two indices, shape (N,)."""
+    return (cells[:, 0] + HALF) * (2 * HALF) + (cells[:, 1] + HALF)
+
+
+def as_cells(keys: Ints) -> Ints:
+    """Return the cells, shape (N, 2), that keys stand for, shape (N,).
+
+    >>> as_cells(as_keys(np.array([(-3, 5)]))).tolist()
+    [[-3, 5]]
+    """
+    return np.column_stack(np.divmod(keys, 2 * HALF)) - HALF

@@ -142,3 +142,10 @@ def test_failure(arguments, message):
     with pytest.raises(ValueError) as error:  # noqa: PT011 - the whole message is compared below
         advance(pk.World([pk.Circle((0.1, 0.0), 0.05)]), *arguments)
     assert str(error.value) == message
+
+
+def test_who_stands_too_close_may_drive_along():
+    """Half of the clearance from the edge: on towards it is blocked, along it and away from it are not."""
+    x = 0.5 - BODY - CLEAR / 2
+    for heading, stopped in ((0.0, True), (np.pi / 2, False), (np.pi, False)):
+        assert advance(pk.World(), (x, 0.0, heading), (6, 6))[1] is stopped

@@ -1,41 +1,39 @@
-"""Changes: a grid that follows things that move.
+"""Moving grid: a grid that gives up what is no longer there.
 
-Beside the story: a plain ``Grid`` never forgets, and a shape that is moved while the robot works leaves a ghost behind.
-Here each cell knows when it was seen last and from where, and is given up when later scans contradict it.
+A plain ``Grid`` never forgets: a shape that is moved leaves a ghost. Here each cell remembers when it was hit last and
+from where, and is evicted after two contradictions.
 
-In:  ``Scans``, one after the other.
-Out: ``grid.points()``: the centres of the cells that still hold, shape (N, 2), metres, world frame.
+In:  ``Scans``, in the order in which they were taken.
+Out: ``grid.points()``: the centres of the cells that still stand, shape (N, 2), metres, world frame.
 
 >>> from primkit.lidar import scan
 >>> from primkit.shapes import Circle
 >>> from primkit.world import World
->>> grid = MovingGrid()
->>> poses = [(-0.2, 0.0, 0.1), (-0.2, 0.01, 0.2), (-0.2, -0.01, 0.3)]
->>> for pose in poses:
-...     grid.add(scan(World([Circle((0, 0), 0.05)]), pose))
->>> len(grid) > 20
-True
->>> for pose in poses:
-...     grid.add(scan(World(), pose))  # it was taken away
->>> len(grid)
+>>> grid, pose = MovingGrid(), (-0.2, 0.0, 0.1)
+>>> grid.add(scan(World([Circle((0, 0), 0.05)]), pose))
+>>> for _ in range(2):  # the circle is taken away; one contradiction may be a stray beam, two are believed
+...     grid.add(scan(World(), pose))
+...     print(len(grid))
+8
 0
 
-What contradicts a cell, at the distance q from the robot, between two beams that are D apart and see as far as r:
+A scan contradicts a cell at the distance q, between two beams that are D radians apart and see as far as r, when
 
-1. A beam goes through it, and on for at least another centimetre (``BEFORE_A_HIT``: grazing beams and noise).
-2. It lies between two beams that both go on beyond it. Something could still stand there: a corner that reaches in
-   between them. Its tip is q away; from there it widens by 2 tan(a / 2), for the sharpest corner a = 30 degrees, and
-   the gap by D. Its sides meet the beams where 2 tan(a / 2) d = D (q + d), so that d = k q with
-   k = D / (2 tan(a / 2) - D): 13 % for a hundred beams. What is nearer than r / (1 + k) is therefore free.
-3. A hit lies in the line of sight in which the cell was seen: something has come in between.
+1. a beam passes through it:               q < r - BEFORE_A_HIT
+2. it lies between beams that both go on:  q (1 + k) < r,  k = D / (2 tan(a / 2) - D)
+3. a hit stands in the line of sight in which it was hit last, between BEFORE_A_HIT and BEHIND in front of it
 
-A beam without a hit says nothing where an outline may stand nearer than the sensor's least distance: next to hits that
-are near, and where the map itself has one. One contradiction may be a stray beam; two are believed. And shapes are
-rigid: when much of what hangs together is given up, the rest of it that has not been seen since goes as well, such as
-the far side of a shape that was moved, or the near side that now lies within it.
+Rule 2 leaves room for a corner that reaches in between the beams. The sharpest, a = 30 degrees, is 2 tan(a / 2) d wide
+at d behind its tip, and the beams D (q + d) apart: equal at d = k q, which is 0.13 q for a hundred beams.
 
-Sources: Moravec and Elfes (1985), "High resolution maps from wide angle sonar", whose grids beams clear; Wolf and
-Sukhatme (2005), "Mobile robot simultaneous localization and mapping in dynamic environments".
+A beam without a hit says nothing where an outline may stand nearer than the sensor's least distance: next to near
+hits, and where the map has one. And shapes are rigid: when SHARE_EVICTED of a connected component is evicted, the rest
+of it that was not hit since goes too.
+
+Not here: probabilities, velocities, tracks.
+
+Sources: Moravec and Elfes (1985), "High resolution maps from wide angle sonar"; Wolf and Sukhatme (2005), "Mobile robot
+simultaneous localization and mapping in dynamic environments".
 """
 
 from __future__ import annotations
@@ -44,20 +42,23 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arguments import Bools, Floats, Ints, check_type
-from ..grid import HALF, Grid
+from ..grid import Grid, as_cells, as_keys
 from ..lidar import Lidar, Scans
 
 BEFORE_A_HIT = 0.01  # m: what lies this near before a hit may be the same outline, seen with 2 mm of noise or grazing
 SHARPEST = np.radians(30)  # no corner of a shape is sharper
-ENOUGH = 2  # contradictions, since it was seen last, that a cell is given up for
-LINKED = 0.015  # m: cells that hang together are nearer to their neighbours
+EVICTED_AFTER = 2  # contradictions, since it was seen last, that a cell is given up for
+CONNECTED = 0.015  # m: cells that hang together are nearer to their neighbours
 BARE = 0.003  # m: where a cell is left this near, it was the noise that one too many was seen, and nothing has moved
-FEW, MUCH = 5, 0.15  # so many cells that were given up, and this share of what hangs together, shake the rest
-RECENT = 20  # scans: what was given up earlier shakes nothing any more
+LEAST_EVICTED, SHARE_EVICTED = 5, 0.15  # cells, and share of a connected component, whose eviction takes the rest along
+SCANS_KEPT = 20  # scans for which an evicted cell may take others along
 BEHIND = 0.06  # m: so far behind something new a cell is contradicted; what is farther off may well still be there
 
+CELL_FIELDS = [("key", np.int64), ("seen", np.int64), ("against", np.int64), ("from_x", float), ("from_y", float)]
+GONE_FIELDS = [("key", np.int64), ("seen", np.int64), ("until", np.int64)]
 
-class MovingGrid(Grid):
+
+class MovingGrid:
     """A set of occupied square cells, each of which holds until it is contradicted.
 
     Parameters
@@ -80,12 +81,12 @@ class MovingGrid(Grid):
     """
 
     def __init__(self, resolution: float = 0.001, lidar: Lidar | None = None) -> None:
-        super().__init__(resolution)
+        self._frame = Grid(resolution)  # stays empty: where its cells lie, these lie
         self.lidar = Lidar() if lidar is None else lidar
         check_type(self.lidar, Lidar, "lidar must be a Lidar, such as Lidar()")
         self.n_scans = 0  # how many scans were added
         self._cells = _no_cells()
-        self._gone = np.zeros(0, dtype=GONE)
+        self._gone = np.zeros(0, dtype=GONE_FIELDS)
 
     def add(self, seen: Scans | ArrayLike) -> None:
         """Give up the cells that scans contradict, and occupy those that their hits fall into; scan by scan.
@@ -101,9 +102,29 @@ class MovingGrid(Grid):
         if len(seen.angles) != self.lidar.beams:
             beams = f"{self.lidar.beams} beams, got {len(seen.angles)} beams"
             raise ValueError(f"scans must be those of the grid's lidar with {beams}")
-        self.to_cells(seen.points())  # refuses what cannot be added, before anything is
+        self._frame.to_cells(seen.points())  # refuses what cannot be added, before anything is
         for i in range(len(seen)):
             self._follow(seen[i : i + 1])
+
+    @property
+    def resolution(self) -> float:
+        """Side of a cell in metres."""
+        return self._frame.resolution
+
+    @property
+    def cells(self) -> Ints:
+        """Indices of the occupied cells, shape (N, 2), sorted."""
+        return as_cells(self._cells["key"])
+
+    def points(self) -> Floats:
+        """Return the centres of the occupied cells, shape (N, 2), metres, in the order of ``cells``."""
+        return self._frame.to_points(self.cells)
+
+    def __len__(self) -> int:
+        return len(self._cells)
+
+    def __repr__(self) -> str:
+        return f"MovingGrid(resolution={self.resolution:g}): {len(self)} occupied cells after {self.n_scans} scans"
 
     @property
     def last_seen(self) -> Ints:
@@ -117,12 +138,11 @@ class MovingGrid(Grid):
         cells = self._cells
         cells["against"] += self._contradicted(one)
         self._cells = _merged(cells, self._hit_by(one))
-        self._keys = self._cells["key"]
-        given_up = self._cells["against"] >= ENOUGH
+        given_up = self._cells["against"] >= EVICTED_AFTER
         if given_up.any():
-            self._gone = np.concatenate([self._gone[self._gone["until"] >= self.n_scans], self._leaving(given_up)])
-            self._keep(~given_up)
-            self._keep(~self._shaken())
+            self._gone = np.concatenate([self._gone[self._gone["until"] >= self.n_scans], self._evicted(given_up)])
+            self._cells = self._cells[~given_up]
+            self._cells = self._cells[~self._falling()]
 
     def give_up(self, which: ArrayLike) -> None:
         """Give up cells for a reason of one's own, such as a shape that stands around them now.
@@ -149,16 +169,11 @@ class MovingGrid(Grid):
         if given_up.shape != (len(self),) or given_up.dtype != bool:
             rule = f"which must hold True or False for each of the {len(self)} cells"
             raise ValueError(f"{rule}, got shape {given_up.shape}")
-        self._keep(~given_up)
-
-    def _keep(self, which: Bools) -> None:
-        self._cells = self._cells[which]
-        self._keys = self._cells["key"]
+        self._cells = self._cells[~given_up]
 
     def _hit_by(self, one: Scans) -> NDArray[np.void]:
         """Return the cells that one scan hits, each once."""
-        at = self.to_cells(one.points())
-        keys = np.unique((at[:, 0] + HALF) * (2 * HALF) + (at[:, 1] + HALF))
+        keys = np.unique(as_keys(self._frame.to_cells(one.points())))
         hit = _no_cells(len(keys))
         hit["key"], hit["seen"], hit["from_x"], hit["from_y"] = keys, self.n_scans, *one.poses[0, :2]
         return hit
@@ -194,27 +209,27 @@ class MovingGrid(Grid):
         between: Bools = ((across <= self.resolution) & (ahead > BEFORE_A_HIT) & (ahead < BEHIND)).any(axis=1)
         return between
 
-    def _leaving(self, given_up: Bools) -> NDArray[np.void]:
+    def _evicted(self, given_up: Bools) -> NDArray[np.void]:
         """Return what is remembered of cells that are given up: where they were, and when they were seen last."""
-        gone = np.zeros(int(given_up.sum()), dtype=GONE)
+        gone = np.zeros(int(given_up.sum()), dtype=GONE_FIELDS)
         gone["key"], gone["seen"] = (self._cells[name][given_up] for name in ("key", "seen"))
-        gone["until"] = self.n_scans + RECENT
+        gone["until"] = self.n_scans + SCANS_KEPT
         return gone
 
-    def _shaken(self) -> Bools:
+    def _falling(self) -> Bools:
         """Tell which cells hang together with many that were given up, and were not seen since, shape (N,)."""
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components
         from scipy.spatial import cKDTree
 
         left = self.points()
-        places = self.to_points(_at(self._gone["key"]))
+        places = self._frame.to_points(as_cells(self._gone["key"]))
         bare = np.ones(len(places), dtype=bool) if len(left) == 0 else cKDTree(left).query(places)[0] > BARE
         self._gone = gone = self._gone[bare]
-        if len(gone) < FEW:
+        if len(gone) < LEAST_EVICTED:
             return np.zeros(len(left), dtype=bool)
         together = np.vstack([places[bare], left])
-        pairs = cKDTree(together).query_pairs(LINKED, output_type="ndarray")
+        pairs = cKDTree(together).query_pairs(CONNECTED, output_type="ndarray")
         links = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(together), len(together)))
         n, part = connected_components(links, directed=False)
         part_gone, part_left = part[: len(gone)], part[len(gone) :]
@@ -222,23 +237,14 @@ class MovingGrid(Grid):
         np.maximum.at(last, part_gone, gone["seen"])
         old = self._cells["seen"] <= last[part_left]
         n_gone, n_old = np.bincount(part_gone, minlength=n), np.bincount(part_left[old], minlength=n)
-        falls = (n_gone >= FEW) & (n_gone >= MUCH * (n_gone + n_old))
-        self._gone = gone[~falls[part_gone]]  # what has fallen shakes nothing more
-        shaken: Bools = falls[part_left] & old
-        return shaken
-
-
-CELL = [("key", np.int64), ("seen", np.int64), ("against", np.int64), ("from_x", float), ("from_y", float)]
-GONE = [("key", np.int64), ("seen", np.int64), ("until", np.int64)]
+        falls = (n_gone >= LEAST_EVICTED) & (n_gone >= SHARE_EVICTED * (n_gone + n_old))
+        self._gone = gone[~falls[part_gone]]  # what fell takes nothing more along
+        falling: Bools = falls[part_left] & old
+        return falling
 
 
 def _no_cells(n: int = 0) -> NDArray[np.void]:
-    return np.zeros(n, dtype=CELL)
-
-
-def _at(keys: Ints) -> Ints:
-    """Return the indices of cells, shape (N, 2), from their keys."""
-    return np.column_stack(np.divmod(keys, 2 * HALF)) - HALF
+    return np.zeros(n, dtype=CELL_FIELDS)
 
 
 def _merged(cells: NDArray[np.void], hit: NDArray[np.void]) -> NDArray[np.void]:

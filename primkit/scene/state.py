@@ -130,7 +130,7 @@ class DriveState:
         self._finder.forget()
         self.trouble = ""  # why the journal could not be written, in one sentence
         self.world, self.pose, self.n_scans, self.stopped = self._start_world, start_pose(self._start_world), 0, False
-        self.grid: Grid = MovingGrid(lidar=self.lidar) if self.moving else Grid()
+        self.grid: Grid | MovingGrid = MovingGrid(lidar=self.lidar) if self.moving else Grid()
         self._cells = self.grid.cells  # as they were told last
         self.found = list[Detection]()
         self.n_scans_found = 0  # how many scans the shapes were found in
@@ -190,7 +190,7 @@ class DriveState:
         """Have the map looked at, or so many of its cells."""
         cells = self.grid.cells
         self._n_news = 0
-        self._finder.look(self.grid.to_points(cells[thinned(cells, most)]), self.n_scans)
+        self._finder.look(self.grid.points()[thinned(cells, most)], self.n_scans)
 
     def _fetch(self, wait: bool = False) -> bool:
         news = self._finder.news(wait=wait)

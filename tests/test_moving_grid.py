@@ -5,7 +5,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import primkit as pk
-from primkit.driving.moving_grid import BEFORE_A_HIT, ENOUGH, MovingGrid
+from primkit.driving.moving_grid import BEFORE_A_HIT, EVICTED_AFTER, MovingGrid
 from primkit.lidar import Scans
 from primkit.plots import plot_change
 from primkit.robot import BODY, clearance
@@ -119,7 +119,7 @@ THROUGH = {
 def test_a_beam_that_goes_through_clears(reach, n_left):
     grid = MovingGrid()
     grid.add(one_scan(0.2))
-    for _ in range(ENOUGH):
+    for _ in range(EVICTED_AFTER):
         assert len(grid) >= 1  # one contradiction is not enough
         grid.add(one_scan(reach))
     assert len(grid) == n_left
@@ -164,6 +164,24 @@ def test_silence_beside_a_near_wall_clears_nothing():
     assert far > 50
     grid.add(pk.scan(world, [(0, 0.001 * i, 0.01 * i) for i in range(-5, 6)]))
     assert (grid.points()[:, 0] > 0.19).sum() >= far - 2
+
+
+def test_cells_that_fell_shake_nothing_more():
+    """A row of cells is taken away and falls; one cell of a new row behind it must not pull that down as well."""
+
+    def row(*ranges):
+        one = one_scan()
+        measured = one.ranges.copy()
+        measured[0, : len(ranges)] = ranges
+        return Scans(one.poses, one.angles, measured, one.inside)
+
+    grid = MovingGrid()
+    for seen in (row(*[0.2] * 10), row(), row(), row(*[0.21] * 10)):
+        grid.add(seen)
+    assert len(grid) == 10
+    for _ in range(EVICTED_AFTER):  # the first beam goes on; the others end far in front, and say nothing
+        grid.add(row(np.inf, *[0.1] * 9))
+    assert (np.hypot(*grid.points().T) > 0.2).sum() == 9
 
 
 def test_a_scan_from_inside_a_shape_says_nothing():
