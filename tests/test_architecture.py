@@ -27,6 +27,22 @@ ORDER = (
     *("__init__", "commands", "__main__"),
 )
 
+# Rooms that know less than the order allows: the only ones that they import.
+KNOWS_ONLY = {
+    "raycast": ("arguments", "shapes", "world"),  # exact rays
+    "robust": ("arguments", "shapes", "segmentation", "ransac", "lines", "circles", "seen"),  # no grid, LiDAR, pipeline
+    "formats": ("arguments", "shapes", "world", "robot", "lidar"),  # no estimator
+}
+# Rooms that others must not know, though these stand above them; and rooms that nobody knows but these.
+KNOWS_NO = {"scene": ("widgets",), "checks": ("plots", "widgets", "scene")}
+KNOWN_TO = {
+    "course": ("commands",),
+    "widgets": (),
+    "scene": (),
+    "checks": ("course",),
+    "study": ("plots", "widgets", "commands"),
+}
+
 # Heavy libraries, and the one room that may import each.
 ONLY_USER = {
     "matplotlib": ("plots",),
@@ -98,6 +114,22 @@ def wrong_way(name: str, source: str, order: tuple[str, ...] = ORDER) -> list[st
             continue
         if other not in order[: order.index(room)]:
             breaches.append(f"{name}:{line}: imports {other}, which does not stand above {room}")
+    return breaches
+
+
+def knows_too_much(name: str, source: str) -> list[str]:
+    """Report imports of rooms that stand above this one, but that it must not know."""
+    room = name.split(".")[0]
+    if room in ("__init__", "__main__"):
+        return []
+    breaches = []
+    for line, target in imports(name, source):
+        other = room_of(target, ORDER)
+        if other in (None, room):
+            continue
+        allowed = other in KNOWS_ONLY.get(room, (other,)) and other not in KNOWS_NO.get(room, ())
+        if not allowed or room not in KNOWN_TO.get(other, (room,)):
+            breaches.append(f"{name}:{line}: imports {other}, which {room} must not know")
     return breaches
 
 
@@ -180,7 +212,7 @@ def not_the_plan(tracked: Iterable[str]) -> list[str]:
     ]
 
 
-RULES = (wrong_way, heavy, hidden_imports, global_random, talk, too_long)
+RULES = (wrong_way, knows_too_much, heavy, hidden_imports, global_random, talk, too_long)
 MODULES = sorted(PACKAGE.rglob("*.py"))
 
 
@@ -209,6 +241,19 @@ BROKEN = {
     "a stranger": (wrong_way, "helpers", ""),
     "a stranger in a folder": (wrong_way, "helpers.text", ""),
     "imports a stranger": (wrong_way, "plots", "from .helpers import text"),
+    "rays that know the sensor": (knows_too_much, "raycast.fast", "from ..robot import BODY"),
+    "an engine that knows the grid": (knows_too_much, "robust.scatter", "from ..grid import Grid"),
+    "an engine that knows the sensor": (knows_too_much, "robust.scatter", "from ..lidar import Lidar"),
+    "an engine that knows the pipeline": (knows_too_much, "robust.regroup", "from .. import pipeline"),
+    "files that know the estimator": (knows_too_much, "formats.maps", "from ..measure import Detection"),
+    "files that know the engine": (knows_too_much, "formats.scans", "from ..robust.evidence import Candidate"),
+    "a scene that knows the sliders": (knows_too_much, "scene.page", "from ..widgets.slider import Slider"),
+    "sliders that know the scene": (knows_too_much, "widgets.slider", "from ..scene import drive_scene"),
+    "checks that know the course": (knows_too_much, "checks.answer", "from ..course.grading import Mark"),
+    "checks that draw": (knows_too_much, "checks.answer", "def f():\n    from ..plots import plot_points"),
+    "a story that knows the course": (knows_too_much, "pipeline", "from .course import personal"),
+    "plots that know the course": (knows_too_much, "plots.look", "from ..course.reporting import report"),
+    "the driver that knows the study": (knows_too_much, "driving.explore", "from ..study import run_study"),
     "matplotlib": (heavy, "study", "import matplotlib.pyplot as plt"),
     "matplotlib in a function": (heavy, "__main__", "def f():\n    from matplotlib import pyplot"),
     "matplotlib in the contents": (heavy, "__init__", "import matplotlib"),
@@ -248,6 +293,9 @@ SOUND = {
     "other libraries": (wrong_way, "grid", "import numpy as np\nfrom pipeline import x"),
     "the contents name all": (wrong_way, "__init__", "from . import plots, shapes"),
     "the command line uses all": (wrong_way, "__main__", "import primkit as pk\nfrom . import study"),
+    "files that know the sensor": (knows_too_much, "formats.scans", "from ..lidar import Scans"),
+    "a room that knows itself": (knows_too_much, "course.reporting", "from .course import Course"),
+    "commands that know the course": (knows_too_much, "commands.teach", "from ..course.course import Course"),
     "matplotlib in plots": (heavy, "plots", "import matplotlib.pyplot as plt"),
     "a folder's room is the user": (heavy, "widgets.scene", "import ipywidgets"),
     "scikit-image is not scikit-learn": (heavy, "circles", "import skimage, sklearnex"),
