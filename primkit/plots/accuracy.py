@@ -18,7 +18,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..study.accuracy.table import COARSE, FINE, TRUTHS, AccuracyLine, AccuracyTable
+from ..study.accuracy.accuracy_table import COARSE, FINE, TRUTHS, AccuracyLine, AccuracyTable
 from ..study.estimate import Estimate
 from .look import BLACK, BLUE, GREEN, GREY, INK, ORANGE, PALE, PURPLE, VERMILION, check_type
 from .story import Picture, freeze, plain

@@ -247,9 +247,9 @@ class Scene(anywidget.AnyWidget):
             self._automatic = None
             return {"say": f"The robot cannot drive by itself here: {type(error).__name__}: {error}"}
         places = {run.name: tenths(run.way) for run in automatic}
-        runs = Comparison((self.state.by_hand(), *automatic))
+        table = Comparison((self.state.by_hand(), *automatic)).table()
         say = {} if self._compared else {"say": "The robot has driven by itself, too: see the table."}
-        self._compared = {"table": runs.texts(), "places": places}
+        self._compared = {"table": [table.header, *table.rows], "places": places}
         return {"automatic": self._compared} | say
 
     def close(self) -> None:

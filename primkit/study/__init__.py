@@ -3,7 +3,7 @@
 Beside the story: one map tells what a method can do, many tell how often.
 
 In:  worlds, settings by name, the sensor, a seed.
-Out: a ``Row`` for each map and method; from them ``Table``, which prints, shows as HTML and is written as CSV.
+Out: a ``Row`` for each map and method; from them a ``PaperTable``, which prints, shows as HTML and is written as CSV.
 
 >>> from primkit.pipeline import ROBUST
 >>> from primkit.world import random_world
@@ -39,9 +39,9 @@ Source: the paper's section 3.3, "Results".
 
 from ..driving.scripted import drives_on, make_scripted_drive, scripted_route
 from ..driving.wander import wander
+from .accuracy.accuracy_table import AccuracyLine, AccuracyTable, accuracy_as_csv, run_accuracy
 from .accuracy.partial import PartialLine, PartialTable, run_partial
 from .accuracy.sweeps import REMEDIES, SWEEPS, UNTUNED
-from .accuracy.table import AccuracyLine, AccuracyTable, accuracy_as_csv, run_accuracy
 from .accuracy.whole import accuracy_study
 from .cluster import on_cluster
 from .estimate import Estimate
@@ -49,11 +49,11 @@ from .experiment import Experiment, Run, perform, run
 from .journal import JOURNAL, make_folder, n_rows
 from .many import METHODS, maps_in, run_study
 from .oracle import ORACLE, Oracle, oracle_fit, told_points
+from .paper_table import Line, PaperTable
 from .published import PUBLISHED, rows_as_csv, tables, write_tables
 from .row import Row, Score
 from .seen_shares import share_seen, shares_seen
 from .seen_table import SeenLine, SeenTable, seen_table
-from .table import Line, Table
 
 __all__ = [
     "run_study",
@@ -63,7 +63,7 @@ __all__ = [
     "write_tables",
     "Row",
     "Score",
-    "Table",
+    "PaperTable",
     "Line",
     "METHODS",
     "PUBLISHED",

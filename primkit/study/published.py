@@ -25,8 +25,9 @@ from numpy.typing import NDArray
 
 from ..formats import StrPath, write_atomically
 from ..shapes import KINDS
+from ..table import as_csv
+from .paper_table import Line, PaperTable
 from .row import Movement, Row, Score
-from .table import Line, Table, as_csv
 
 RESAMPLES = 5000  # the ends of an interval then differ by about a hundredth of its width from draw to draw
 BLOCK = 1_000_000  # counts drawn at once: 8 MB, however many maps there are
@@ -71,7 +72,7 @@ PUBLISHED: Mapping[Movement, Mapping[str, Figures]] = {
 }
 
 
-def tables(rows: Iterable[Row], *, driven: str = "") -> tuple[Table, ...]:
+def tables(rows: Iterable[Row], *, driven: str = "") -> tuple[PaperTable, ...]:
     """Return the paper's tables with our means beside the published figures.
 
     Parameters
@@ -83,7 +84,7 @@ def tables(rows: Iterable[Row], *, driven: str = "") -> tuple[Table, ...]:
 
     Returns
     -------
-    tuple of Table
+    tuple of PaperTable
         Tables 1 and 2 for rows with automatic movement, 3 and 4 for manual: those that the rows have maps for.
 
     Raises
@@ -132,7 +133,7 @@ def rows_as_csv(rows: Iterable[Row]) -> str:
     return as_csv(header + errors, lines)
 
 
-def write_tables(folder: StrPath, made: Iterable[Table], rows: Iterable[Row]) -> list[str]:
+def write_tables(folder: StrPath, made: Iterable[PaperTable], rows: Iterable[Row]) -> list[str]:
     """Write each table and all rows as CSV into a folder, and return the files' names."""
     files = {f"{table.title.split('.')[0].lower().replace(' ', '-')}.csv": table.csv() for table in made}
     files["rows.csv"] = rows_as_csv(rows)
@@ -183,10 +184,10 @@ def resampled_means(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.vstack(means)
 
 
-def _table(title: str, rows: Sequence[Row], groups: Mapping[str, Sequence[Row]]) -> Table:
+def _table(title: str, rows: Sequence[Row], groups: Mapping[str, Sequence[Row]]) -> PaperTable:
     """Return one table: for each group of maps the published figures, then each method under each protocol."""
     lines = [line for maps, chosen in groups.items() if chosen for line in _lines(maps, chosen)]
-    return Table(title, tuple(lines), _notes(title, rows, lines))
+    return PaperTable(title, tuple(lines), _notes(title, rows, lines))
 
 
 def _lines(maps: str, rows: Sequence[Row]) -> list[Line]:

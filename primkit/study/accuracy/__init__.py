@@ -4,9 +4,9 @@ In:  settings by name, the sweeps' names, a number of maps, a seed.
 Out: ``AccuracyTable`` and ``PartialTable``, which print, show as HTML and are written as CSV.
 """
 
+from .accuracy_table import AccuracyLine, AccuracyTable, accuracy_as_csv, run_accuracy
 from .partial import PartialLine, PartialTable, run_partial
 from .sweeps import REMEDIES, SWEEPS, UNTUNED
-from .table import AccuracyLine, AccuracyTable, accuracy_as_csv, run_accuracy
 from .whole import accuracy_study
 
 __all__ = [

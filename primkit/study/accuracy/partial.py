@@ -21,18 +21,20 @@ from typing import ClassVar
 import numpy as np
 
 from ...arguments import ROUNDING, Floats, as_count, as_positive
+from ...table import Table, as_csv
 from ..estimate import Estimate, Z, pooled_share
 from ..many import checked_jobs, in_parallel
-from ..table import as_block, as_csv, as_html, wrapped
 from .drive_views import N_SCANS, N_SHAPES, ROOM, View, views_from
 from .sweeps import UNTUNED
 
 NOISES = (0.0, 0.001, 0.002, 0.005)  # m
 TOLERANCE = 0.005  # m
 
-KIND_HEADER = ("", "n", "right kind", "n", "if all sides were seen")
-FIND_HEADER = ("", "n", "visible and measured", "n", "hidden, but claimed")
-RIGHT_HEADER = ("", "n", "right within 5 mm", "wrong kinds too", "within 1.96 std")
+PARTIAL_HEADER = (
+    *("", "n", "right kind", "n", "if all sides were seen"),
+    *("n", "visible and measured", "n", "hidden, but claimed"),
+    *("n", "right within 5 mm", "wrong kinds too", "within 1.96 std"),
+)
 
 
 @dataclass(frozen=True)
@@ -81,13 +83,12 @@ class PartialLine:
     strict: Estimate | None
     covered: Estimate | None
 
-    def cells(self) -> tuple[tuple[str, ...], ...]:
-        """Return the line's texts in three parts: kinds, what was measured, how right that is."""
-        name = f"{1000 * self.noise_std:g} mm"
+    def cells(self) -> tuple[str, ...]:
+        """Return the line as texts: kinds, what was measured, how right that is."""
         kinds = (str(self.n_shapes), _text(self.kind), str(self.n_whole), _text(self.whole))
         found = (str(self.n_visible), _text(self.found), str(self.n_hidden), _text(self.claimed))
         right = (str(self.n_measured), _text(self.right), _text(self.strict), _text(self.covered))
-        return (name, *kinds), (name, *found), (name, *right)
+        return (f"{1000 * self.noise_std:g} mm", *kinds, *found, *right)
 
 
 @dataclass(frozen=True)
@@ -99,19 +100,17 @@ class PartialTable:
     title: str = "Partial views: random drives that see 40 to 90 % of each outline"
     file: ClassVar[str] = "partial.csv"
 
+    def table(self) -> Table:
+        """Return the lines as texts, in three parts: kinds, what was measured, how right that is."""
+        drives = " or ".join(dict.fromkeys(str(line.n_drives) for line in self.lines))
+        rows = [(f"range noise, {drives} drives",), *(line.cells() for line in self.lines)]
+        return Table(PARTIAL_HEADER, rows, self.title, self.notes, folds=(5, 9))
+
     def __str__(self) -> str:
-        text = [self.title]
-        for part, header in enumerate((KIND_HEADER, FIND_HEADER, RIGHT_HEADER)):
-            text += ["", *as_block(header, [(self._heading(), [line.cells()[part] for line in self.lines])])]
-        return "\n".join([*text, *wrapped(self.notes)])
+        return str(self.table())
 
     def _repr_html_(self) -> str:
-        rows = [line.cells()[0] + line.cells()[1][1:] + line.cells()[2][1:] for line in self.lines]
-        header = KIND_HEADER + FIND_HEADER[1:] + RIGHT_HEADER[1:]
-        return as_html(self.title, header, [(self._heading(), rows)], self.notes)
-
-    def _heading(self) -> str:
-        return f"range noise, {' or '.join(dict.fromkeys(str(line.n_drives) for line in self.lines))} drives"
+        return self.table()._repr_html_()
 
     def csv(self) -> str:
         """Return the lines with all their numbers as CSV: shares from 0 to 1, noise in metres."""

@@ -24,18 +24,20 @@ import numpy as np
 from ...arguments import Floats, as_count
 from ...formats import StrPath
 from ...pipeline import Settings
+from ...table import Table, as_csv
 from ..estimate import Estimate, mean_of, ratio_of, share_of
 from ..many import METHODS, checked_jobs, perform_all
 from ..oracle import ORACLE, Oracle
 from ..row import Row
-from ..table import as_block, as_csv, as_html, wrapped
 from .sweeps import REMEDIES, SWEEPS, UNTUNED, Level, experiments, n_runs
 
 FINE, COARSE = 0.001, 0.005  # m: the two tolerances
 TRUTHS = "oracle"  # its name among the methods
 
-RIGHT_HEADER = ("", "within 1 mm", "within 5 mm", "right count")
-ERROR_HEADER = ("", "centre [mm]", "x oracle", "dimens. [mm]", "x oracle", "time [s]")
+ACCURACY_HEADER = (
+    *("", "within 1 mm", "within 5 mm", "right count"),
+    *("centre [mm]", "x oracle", "dimens. [mm]", "x oracle", "time [s]"),
+)
 
 
 @dataclass(frozen=True)
@@ -81,13 +83,9 @@ class AccuracyLine:
     dimension_ratio: Estimate | None
     time: float | None
 
-    def right_cells(self) -> tuple[str, ...]:
-        """Return the method and what share of it is right, as texts."""
-        return (self.method, str(self.fine), str(self.coarse), "told" if self.count is None else str(self.count))
-
-    def error_cells(self) -> tuple[str, ...]:
-        """Return how far off the method is and how long it takes, as texts."""
-        cells = []
+    def cells(self) -> tuple[str, ...]:
+        """Return the line as texts: what share is right, how far off it is, and how long it takes."""
+        cells = [self.method, str(self.fine), str(self.coarse), "told" if self.count is None else str(self.count)]
         for rms, ratio in ((self.center_rms, self.center_ratio), (self.dimension_rms, self.dimension_ratio)):
             cells += [f"{1000 * rms:.3f}", "-" if ratio is None else ratio.text(2 if ratio.value < 10 else 0)]
         return (*cells, "-" if self.time is None else f"{self.time:.3f}")
@@ -114,22 +112,19 @@ class AccuracyTable:
     notes: tuple[str, ...] = ()
     file: ClassVar[str] = "accuracy.csv"  # holds all sweeps
 
-    def groups(self) -> list[tuple[str, list[AccuracyLine]]]:
-        """Return each level's heading with its lines."""
-        return [(_heading(level[0]), level) for level in self._levels()]
-
-    def _levels(self) -> list[list[AccuracyLine]]:
-        return [list(lines) for _, lines in groupby(self.lines, key=lambda line: line.level)]
+    def table(self) -> Table:
+        """Return the lines as texts, level by level."""
+        rows: list[tuple[str, ...]] = []
+        for _, lines in groupby(self.lines, key=lambda line: line.level):
+            level = list(lines)
+            rows += [(_heading(level[0]),), *(line.cells() for line in level)]
+        return Table(ACCURACY_HEADER, rows, self.title, self.notes, folds=(4,))
 
     def __str__(self) -> str:
-        right = [(heading, [line.right_cells() for line in lines]) for heading, lines in self.groups()]
-        off = [(h, [(line.method, *line.error_cells()) for line in lines]) for h, lines in self.groups()]
-        blocks = [*as_block(RIGHT_HEADER, right), "", *as_block(ERROR_HEADER, off)]
-        return "\n".join([self.title, "", *blocks, *wrapped(self.notes)])
+        return str(self.table())
 
     def _repr_html_(self) -> str:
-        groups = [(h, [line.right_cells() + line.error_cells() for line in lines]) for h, lines in self.groups()]
-        return as_html(self.title, RIGHT_HEADER + ERROR_HEADER[1:], groups, self.notes)
+        return self.table()._repr_html_()
 
 
 def run_accuracy(
