@@ -508,7 +508,7 @@ def test_the_interval_agrees_with_scipy():
 def test_the_interval_does_not_depend_on_the_blocks(monkeypatch):
     values = np.random.default_rng(1).uniform(0, 1, (7, 3))
     whole = published.interval(values)
-    monkeypatch.setattr(published, "BLOCK", 7 * 300)
+    monkeypatch.setattr(published, "COUNTS_AT_ONCE", 7 * 300)
     assert np.allclose(published.interval(values), whole, rtol=0, atol=1e-12)
 
 

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 
 from .published import resampled_means
 
-Z = 1.959964  # standard deviations on each side that hold 95 % of a Gaussian
+Z95 = 1.959964  # standard deviations on each side that hold 95 % of a Gaussian
 
 
 @dataclass(frozen=True)
@@ -59,8 +59,11 @@ def share_of(share: float, n: int) -> Estimate:
     >>> print(share_of(0.0, 10))
     0.000 (0.000-0.278)
     """
-    middle, unsure = share + Z**2 / (2 * n), Z * np.sqrt(share * (1 - share) / n + (Z / (2 * n)) ** 2)
-    low, high = (float((middle + side * unsure) / (1 + Z**2 / n)) for side in (-1, 1))
+    middle, unsure = (
+        share + Z95**2 / (2 * n),
+        Z95 * np.sqrt(share * (1 - share) / n + (Z95 / (2 * n)) ** 2),
+    )
+    low, high = (float((middle + side * unsure) / (1 + Z95**2 / n)) for side in (-1, 1))
     return Estimate(share, max(0.0, low), min(1.0, high))
 
 

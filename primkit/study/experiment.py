@@ -47,7 +47,7 @@ from .row import Row, Score
 from .seen_shares import shares_seen
 
 # Another version of these may draw or compute other numbers.
-LIBRARIES = ("numpy", "scipy", "scikit-learn", "shapely")
+NUMERIC_LIBRARIES = ("numpy", "scipy", "scikit-learn", "shapely")
 
 
 @dataclass(frozen=True, eq=False)
@@ -237,7 +237,7 @@ def program() -> str:
     # The package itself is loaded before any of its modules; importing it from here would turn the story round.
     package = sys.modules[__name__.partition(".")[0]]
     own = f"primkit {package.__version__} {hashlib.sha256(text).hexdigest()[:16]}"
-    return ", ".join([own, *(f"{library} {version(library)}" for library in LIBRARIES)])
+    return ", ".join([own, *(f"{library} {version(library)}" for library in NUMERIC_LIBRARIES)])
 
 
 def _as_text(world: World) -> str:

@@ -36,7 +36,7 @@ from ..shapes import Circle, Polygon, Shape
 from ..world import World
 
 NOBODY = -1  # the owner of a point that comes from nowhere
-SIGMAS = 6.0  # a reading farther than this from the true range, in standard deviations, is no noise
+NOISE_LIMIT = 6.0  # a reading farther than this from the true range, in standard deviations, is no noise
 EXACT = 1e-9  # m: without noise a reading differs by rounding at most
 
 
@@ -82,7 +82,7 @@ def told_points(
     exact = exact_ranges(world, scans, lidar)
     seen, true = scans.ranges[scans.hits], exact[scans.hits]
     real = np.isfinite(true)
-    real[real] = np.abs(seen[real] - true[real]) <= SIGMAS * lidar.noise_std + EXACT
+    real[real] = np.abs(seen[real] - true[real]) <= NOISE_LIMIT * lidar.noise_std + EXACT
     owners = np.full((len(seen), 2), NOBODY)
     hits = Scans(scans.poses, scans.angles, np.where(scans.hits, exact, np.inf), scans.inside).points()
     owners[np.isfinite(true)] = hit_sides(world, hits)

@@ -30,7 +30,7 @@ from .paper_table import Line, PaperTable
 from .row import Movement, Row, Score
 
 RESAMPLES = 5000  # the ends of an interval then differ by about a hundredth of its width from draw to draw
-BLOCK = 1_000_000  # counts drawn at once: 8 MB, however many maps there are
+COUNTS_AT_ONCE = 1_000_000  # counts drawn at once: 8 MB, however many maps there are
 AVERAGE = "average"
 
 
@@ -176,7 +176,7 @@ def resampled_means(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """
     n = len(values)
     rng = np.random.default_rng(0)  # fixed: the same rows give the same table
-    step = max(1, BLOCK // n)
+    step = max(1, COUNTS_AT_ONCE // n)
     means = [
         rng.multinomial(n, np.full(n, 1 / n), size=min(step, RESAMPLES - start)) @ values / n
         for start in range(0, RESAMPLES, step)

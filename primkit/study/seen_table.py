@@ -23,7 +23,7 @@ from ..table import Table, as_csv
 from .estimate import Estimate, ratio_of
 from .row import Row, Score
 
-ENOUGH = 0.6  # share of an outline
+ENOUGH_SEEN = 0.6  # share of an outline
 SEEN_HEADER = ("", "total", "shape", "centre", "dimensions")
 
 
@@ -104,7 +104,7 @@ class SeenTable:
         )
 
 
-def seen_table(rows: Iterable[Row], enough: float = ENOUGH) -> SeenTable:
+def seen_table(rows: Iterable[Row], enough: float = ENOUGH_SEEN) -> SeenTable:
     """Return how right the shapes are that a drive saw enough of, and how right the others.
 
     Parameters

@@ -22,13 +22,13 @@ import numpy as np
 
 from ...arguments import ROUNDING, Floats, as_count, as_positive
 from ...table import Table, as_csv
-from ..estimate import Estimate, Z, pooled_share
+from ..estimate import Z95, Estimate, pooled_share
 from ..many import checked_jobs, in_parallel
-from .drive_views import N_SCANS, N_SHAPES, ROOM, View, views_from
+from .accuracy_table import COARSE
+from .drive_views import DRIVING_GAP, N_SCANS, N_SHAPES, View, views_from
 from .sweeps import UNTUNED
 
-NOISES = (0.0, 0.001, 0.002, 0.005)  # m
-TOLERANCE = 0.005  # m
+PARTIAL_NOISES = (0.0, 0.001, 0.002, 0.005)  # m
 
 PARTIAL_HEADER = (
     *("", "n", "right kind", "n", "if all sides were seen"),
@@ -128,7 +128,7 @@ class PartialTable:
 def run_partial(
     n_drives: int = 100,
     *,
-    noises: Iterable[float] = NOISES,
+    noises: Iterable[float] = PARTIAL_NOISES,
     seed: int = 0,
     jobs: int | None = -1,
     progress: bool = True,
@@ -166,10 +166,10 @@ def run_partial(
 
 def partial_line(noise_std: float, n_drives: int, views: Sequence[View]) -> PartialLine:
     """Return the shares over all views at one noise; drives are the independent draws."""
-    sums = np.zeros((n_drives, len(COUNTED)))
+    sums = np.zeros((n_drives, len(VIEW_COUNTS)))
     for view in views:
         sums[view.drive] += _counted(view)
-    of = dict(zip(COUNTED, sums.T, strict=True))
+    of = dict(zip(VIEW_COUNTS, sums.T, strict=True))
     return PartialLine(
         noise_std=noise_std,
         n_drives=n_drives,
@@ -187,20 +187,20 @@ def partial_line(noise_std: float, n_drives: int, views: Sequence[View]) -> Part
 
 
 # What is counted of each view; strays are dimensions said to be measured of a shape of a wrong kind.
-COUNTED = (
+VIEW_COUNTS = (
     *("shapes", "kind", "whole", "whole_kind", "strays"),
     *("visible", "found", "hidden", "claimed", "measured", "right", "covered"),
 )
 
 
 def _counted(view: View) -> Floats:
-    """Return what one view adds to each of ``COUNTED``."""
+    """Return what one view adds to each of ``VIEW_COUNTS``."""
     kind, measured = view.kind_right, np.array(view.measured, dtype=bool)
     first = (True, kind, view.whole, view.whole and kind, 0 if kind else measured.sum())
     if not kind:
         return np.array([*first, *7 * [0]], dtype=float)
     error, std, hidden = np.abs(view.errors), np.array(view.stds), np.array(view.hidden)
-    right, covered = measured & (error <= TOLERANCE + ROUNDING), measured & (error <= Z * std)
+    right, covered = measured & (error <= COARSE + ROUNDING), measured & (error <= Z95 * std)
     flags = (~hidden, ~hidden & measured, hidden, hidden & measured, measured, right, covered)
     return np.array([*first, *(f.sum() for f in flags)], dtype=float)
 
@@ -211,8 +211,8 @@ def _text(estimate: Estimate | None) -> str:
 
 def _notes(n_drives: int, seed: int) -> tuple[str, ...]:
     return (
-        f"{n_drives} maps with {N_SHAPES} free shapes, gaps of {100 * ROOM:g} cm; on each a smooth random drive of "
-        f"{N_SCANS} scans that keeps 4 cm from outlines. ROBUST is told nothing.",
+        f"{n_drives} maps with {N_SHAPES} free shapes, gaps of {100 * DRIVING_GAP:g} cm; on each a smooth random drive "
+        f"of {N_SCANS} scans that keeps 4 cm from outlines. ROBUST is told nothing.",
         "right kind: share of the shapes that were found as what they are. A side that was never seen may leave nobody "
         "able to tell: beside it stand the shapes of which all sides were seen.",
         "All below is about dimensions of shapes with the right kind. visible: each side that the dimension hangs on "
