@@ -42,9 +42,8 @@ from ..pipeline import Settings, find_shapes
 from ..robot import teleport_poses, waypoints
 from ..shapes import Circle, Kind
 from ..world import World
-from .oracle import Oracle, oracle_fit, told_points
+from .oracle import Oracle, oracle_fit, shares_seen, told_points
 from .row import Row, Score
-from .seen_shares import shares_seen
 
 # Another version of these may draw or compute other numbers.
 NUMERIC_LIBRARIES = ("numpy", "scipy", "scikit-learn", "shapely")

@@ -7,11 +7,7 @@ Out: Tables 1 and 2 (automatic movement) and 3 and 4 (manual movement), as far a
 >>> one.score.weighted, one.time, two.score.weighted, two.time
 (1.0, 10.03, 0.83, 10.37)
 
-A mean's 95 % interval is the percentile bootstrap over maps: maps are the independent draws, not the shapes or
-coordinates on them. It is as wide as the maps differ; when all of them score alike it has no width, which a note says.
-
-Sources: the figures are those of "Mapping of Primitives in Mobile Robotics Using Computer Vision", Tables 1 to 4; the
-interval is that of Efron (1979), "Bootstrap methods: another look at the jackknife".
+Source: "Mapping of Primitives in Mobile Robotics Using Computer Vision", Tables 1 to 4.
 """
 
 from __future__ import annotations
@@ -21,16 +17,14 @@ from dataclasses import astuple, dataclass, fields, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..formats import StrPath, write_atomically
 from ..shapes import KINDS
 from ..table import as_csv
+from .estimate import interval
 from .paper_table import Line, PaperTable
 from .row import Movement, Row, Score
 
-RESAMPLES = 5000  # the ends of an interval then differ by about a hundredth of its width from draw to draw
-COUNTS_AT_ONCE = 1_000_000  # counts drawn at once: 8 MB, however many maps there are
 AVERAGE = "average"
 
 
@@ -140,48 +134,6 @@ def write_tables(folder: StrPath, made: Iterable[PaperTable], rows: Iterable[Row
     for name, text in files.items():
         write_atomically(Path(folder) / name, text)
     return list(files)
-
-
-def interval(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the ends of the 95 % interval of each column's mean: percentile bootstrap over rows.
-
-    Parameters
-    ----------
-    values : array, shape (N, Q)
-        One row for each map.
-
-    Examples
-    --------
-    >>> low, high = interval(np.array([[0.0, 1.0], [1.0, 1.0]] * 8))
-    >>> low.tolist(), high.tolist()
-    ([0.25, 1.0], [0.75, 1.0])
-    """
-    low, high = np.percentile(resampled_means(values), (2.5, 97.5), axis=0)
-    return low, high
-
-
-def resampled_means(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return each column's mean over rows drawn with replacement, as often as the bootstrap asks for.
-
-    The same rows are drawn for all columns of one draw, so that what is computed from several means belongs together.
-
-    Parameters
-    ----------
-    values : array, shape (N, Q)
-        One row for each map.
-
-    Returns
-    -------
-    array, shape (5000, Q)
-    """
-    n = len(values)
-    rng = np.random.default_rng(0)  # fixed: the same rows give the same table
-    step = max(1, COUNTS_AT_ONCE // n)
-    means = [
-        rng.multinomial(n, np.full(n, 1 / n), size=min(step, RESAMPLES - start)) @ values / n
-        for start in range(0, RESAMPLES, step)
-    ]
-    return np.vstack(means)
 
 
 def _table(title: str, rows: Sequence[Row], groups: Mapping[str, Sequence[Row]]) -> PaperTable:

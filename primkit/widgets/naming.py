@@ -39,11 +39,8 @@ TRUE_SHAPES: dict[str, Shape] = {
     "rectangle": Polygon([(-0.075, -0.04), (0.075, -0.04), (0.075, 0.04), (-0.075, 0.04)]).moved(angle=np.radians(20)),
     "pentagon": Polygon(0.07 * PENTAGON).moved(angle=0.3),
 }
-MOST_VIEWS, FIRST_BEARING = (
-    12,
-    -2.2,
-)  # the robot's places on an ellipse around the shape, the first [rad] at the lower left
-VIEW_AXES = (0.175, 0.115)  # m: the ellipse's half axes
+MOST_VIEWS, VIEW_AXES = 12, (0.175, 0.115)  # the robot's places on an ellipse around the shape; its half axes, m
+FIRST_BEARING = -2.2  # rad: of the first place, at the lower left
 
 REFIT_REACH = 0.1  # m: every point of the group counts for every candidate
 WALL_RADIUS = 0.25  # m: a larger circle is a wall
@@ -56,11 +53,7 @@ ENDS_PER_SIDE = 21  # an outline is drawn in so many steps a side; every other o
 HARDLY_SEEN = 0.4  # a side of which less than this share has points near it was hardly seen
 
 BARS = Frame((-0.2, 0.2), (-0.26, 0.14), width=425, height=425, y_ticks=(-0.1, 0.0, 0.1))
-FIRST_BAR, BAR_ROW, BAR_ENDS = (
-    -0.178,
-    0.021,
-    (-0.105, 0.115),
-)  # m in that frame: the first bar, one row, from left to right
+FIRST_BAR, BAR_ROW, BAR_ENDS = -0.178, 0.021, (-0.105, 0.115)  # m in BARS: the first bar, a row, left and right
 LONGEST_BAR = 2.5  # times the least cost: longer bars are cut off
 
 

@@ -25,7 +25,7 @@ from ...arguments import Floats, as_count
 from ...formats import StrPath
 from ...pipeline import Settings
 from ...table import Table, as_csv
-from ..estimate import Estimate, mean_of, ratio_of, share_of
+from ..estimate import Estimate, columns_of, in_columns, mean_of, ratio_of, share_of
 from ..many import METHODS, checked_jobs, perform_all
 from ..oracle import ORACLE, Oracle
 from ..row import Row
@@ -219,15 +219,10 @@ def _line(level: Level, rows: Sequence[Row], oracle: Sequence[Row]) -> AccuracyL
 
 def _squares(ours: Row, oracle: Row) -> tuple[float, ...]:
     """Return how many shapes, coordinates and dimensions both have right in kind, and the sums of squared errors."""
-    both = [
-        (own, true)
-        for own, true in zip(ours.errors_by_shape(), oracle.errors_by_shape(), strict=True)
-        if own is not None and true is not None
-    ]
-    counts = [len(both), sum(len(own[0]) for own, _ in both), sum(len(own[1]) for own, _ in both)]
-    sums = [float(np.square(pair[who][part]).sum()) for who in (0, 1) for part in (0, 1) for pair in both]
-    n = len(both)
-    return (*counts, *(sum(sums[i * n : (i + 1) * n]) for i in range(4)))
+    pairs = zip(ours.errors_by_shape(), oracle.errors_by_shape(), strict=True)
+    both = [(own, true) for own, true in pairs if own is not None and true is not None]
+    counts = [sum(len(own[part]) for own, _ in both) for part in (0, 1)]
+    return (len(both), *counts, *(sum(e * e for pair in both for e in pair[who][k]) for who in (0, 1) for k in (0, 1)))
 
 
 def _by_map(names: Sequence[str], values: Floats) -> Floats:
@@ -273,14 +268,13 @@ def _notes(note: str, lines: Sequence[AccuracyLine], seed: int) -> tuple[str, ..
 def accuracy_as_csv(tables: Iterable[AccuracyTable]) -> str:
     """Return the lines of several sweeps as CSV: scores from 0 to 1, errors in millimetres, times in seconds."""
     estimates = ("fine", "coarse", "count", "center_ratio", "dimension_ratio")
-    names = {"fine": "within_1_mm", "coarse": "within_5_mm", "count": "right_count"}
-    ends = [f"{names.get(name, name)}{end}" for name in estimates for end in ("", "_low", "_high")]
-    header = ("sweep", "level", "x", "method", "n_maps", "n_runs", "n_shapes", *ends)
+    columns = columns_of(("within_1_mm", "within_5_mm", "right_count", *estimates[3:]))
+    counts = ("level", "x", "method", "n_maps", "n_runs", "n_shapes")
     rows = []
     for table in tables:
         for line in table.lines:
-            what = (table.sweep, line.level, line.x, line.method, line.n_maps, line.n_runs, line.n_shapes)
-            found: list[Estimate | None] = [getattr(line, name) for name in estimates]
-            numbers = [n for e in found for n in ((None,) * 3 if e is None else (e.value, e.low, e.high))]
-            rows.append((*what, *numbers, 1000 * line.center_rms, 1000 * line.dimension_rms, line.time))
+            numbers = in_columns(getattr(line, name) for name in estimates)
+            rms = (1000 * line.center_rms, 1000 * line.dimension_rms)
+            rows.append((table.sweep, *(getattr(line, name) for name in counts), *numbers, *rms, line.time))
+    header = ("sweep", *counts, *columns)
     return as_csv((*header, "center_rms_mm", "dimension_rms_mm", "computing_time_s"), rows)

@@ -22,13 +22,12 @@ from numpy.typing import NDArray
 from ...arguments import Bools, Floats
 from ...driving.wander import wander
 from ...evaluation import match
-from ...lidar import Lidar, Scans
+from ...lidar import Lidar
 from ...measure import Detection
 from ...pipeline import ROBUST
 from ...shapes import Circle, Kind, Shape
 from ..experiment import Experiment, run
-from ..oracle import exact_ranges, hit_sides
-from ..seen_shares import share_seen
+from ..oracle import exact_hits, share_seen
 from .sweeps import UNTUNED, roomy_world
 
 N_SHAPES = 4
@@ -94,9 +93,7 @@ def views_from(noise_std: float, number: int, seed: int = 0) -> list[View]:
     drive = wander(world, N_SCANS, rng=way_rng)
     lidar = Lidar(noise_std=noise_std)
     done = run(Experiment(f"drive-{number + 1}", world, "ROBUST", ROBUST, lidar, seed=UNTUNED + seed, drive=drive))
-    exact = exact_ranges(world, done.scans, lidar)
-    hits = Scans(done.scans.poses, done.scans.angles, exact, done.scans.inside).points()
-    owners = hit_sides(world, hits)
+    hits, owners = exact_hits(world, done.scans, lidar)
     pairs = {t: done.found[f] for f, t in match([d.shape for d in done.found], world.shapes)}
     views = []
     for i, shape in enumerate(world.shapes):

@@ -15,14 +15,14 @@ of a second to map.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import ClassVar
 
 import numpy as np
 
 from ...arguments import ROUNDING, Floats, as_count, as_positive
 from ...table import Table, as_csv
-from ..estimate import Z95, Estimate, pooled_share
+from ..estimate import Z95, Estimate, columns_of, in_columns, pooled_share
 from ..many import checked_jobs, in_parallel
 from .accuracy_table import COARSE
 from .drive_views import DRIVING_GAP, N_SCANS, N_SHAPES, View, views_from
@@ -114,15 +114,10 @@ class PartialTable:
 
     def csv(self) -> str:
         """Return the lines with all their numbers as CSV: shares from 0 to 1, noise in metres."""
-        counts = ("n_drives", "n_shapes", "n_whole", "n_visible", "n_hidden", "n_measured", "n_claimed")
-        shares = ("kind", "whole", "found", "claimed", "right", "strict", "covered")
-        rows = []
-        for line in self.lines:
-            estimates: list[Estimate | None] = [getattr(line, name) for name in shares]
-            numbers = [n for e in estimates for n in ((None,) * 3 if e is None else (e.value, e.low, e.high))]
-            rows.append((line.noise_std, *(getattr(line, name) for name in counts), *numbers))
-        ends = [f"{name}{end}" for name in shares for end in ("", "_low", "_high")]
-        return as_csv(("noise_std_m", *counts, *ends), rows)
+        names = [field.name for field in fields(PartialLine)]  # the noise, seven counts, and estimates
+        lines = [list(vars(line).values()) for line in self.lines]
+        rows = [(*values[:8], *in_columns(values[8:])) for values in lines]
+        return as_csv(("noise_std_m", *names[1:8], *columns_of(names[8:])), rows)
 
 
 def run_partial(
