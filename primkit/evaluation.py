@@ -22,8 +22,7 @@ Sources: the weights are the paper's; the assignment is optimal, Kuhn (1955), "T
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from html import escape
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -32,6 +31,7 @@ from .arguments import ROUNDING, Floats, as_positive, check_type
 from .measure import Detection
 from .paper import published_values
 from .shapes import Circle, Polygon, Shape
+from .table import Table
 from .world import World
 
 Protocol = Literal["fair", "paper"]
@@ -154,24 +154,18 @@ class Report:
             f" + 0.3 x centre {self.center_accuracy:.3f} + 0.3 x dimensions {self.dimension_accuracy:.3f}  ({rule})"
         )
 
+    def table(self) -> Table:
+        """Return the rows as a table, and the scores below it."""
+        return Table(REPORT_HEADER, self.rows(), notes=(self.scores(),))
+
     def __str__(self) -> str:
-        table = [HEADER, *self.rows()]
-        widths = [max(len(row[i]) for row in table) for i in range(len(HEADER))]
-        lines = ["  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip() for row in table]
-        lines.insert(1, "  ".join("-" * w for w in widths))
-        return "\n".join([*lines, "", self.scores()])
+        return f"{replace(self.table(), notes=())}\n\n{self.scores()}"  # the scores stay on one line
 
     def _repr_html_(self) -> str:
-        head = "".join(f'<th scope="col" style="text-align:left">{escape(cell)}</th>' for cell in HEADER)
-        body = "".join(
-            "<tr>" + "".join(f'<td style="text-align:left">{escape(cell)}</td>' for cell in row) + "</tr>"
-            for row in self.rows()
-        )
-        caption = f'<caption style="text-align:left;caption-side:bottom">{escape(self.scores())}</caption>'
-        return f"<table>{caption}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+        return self.table()._repr_html_()
 
 
-HEADER = ("true shape", "found as", "centre off by x, y [mm]", "dimensions off by [mm]", "verdict")
+REPORT_HEADER = ("true shape", "found as", "centre off by x, y [mm]", "dimensions off by [mm]", "verdict")
 
 
 def evaluate(

@@ -19,7 +19,7 @@ PACKAGE = ROOT / "primkit"
 # The story: a room (a module, or a folder of them) imports only rooms above it. The table of contents, __init__, loads
 # rooms on first use; who imports it from inside could reach everything, so only the command line may.
 ORDER = (
-    "arguments",
+    *("arguments", "table"),
     *("shapes", "world", "robot", "raycast", "lidar", "grid"),
     *("segmentation", "ransac", "lines", "circles", "seen"),
     *("robust", "measure", "paper", "steps", "pipeline", "evaluation"),

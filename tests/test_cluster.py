@@ -16,7 +16,7 @@ from primkit.study.many import in_parallel, perform_all
 from primkit.world import random_world
 from tests.helpers import exactly
 
-distributed = pytest.importorskip("distributed", reason=f"dask is absent: {cluster.HOW_TO}")
+distributed = pytest.importorskip("distributed", reason=f"dask is absent: {cluster.INSTALL_DASK}")
 psutil = pytest.importorskip("psutil")
 
 NOISY = Lidar(noise_std=0.002)
@@ -97,7 +97,7 @@ def test_an_error_on_a_worker_names_the_map(workers):
 
 @pytest.fixture
 def impatient(monkeypatch):
-    monkeypatch.setattr(cluster, "PATIENCE", 0.5)
+    monkeypatch.setattr(cluster, "ANSWER_TIMEOUT", 0.5)
 
 
 @pytest.mark.usefixtures("impatient")

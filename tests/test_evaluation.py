@@ -524,19 +524,19 @@ class Balance(HTMLParser):
 )
 def test_the_html_is_well_formed_and_says_the_same(report):
     html = report._repr_html_()
-    assert ElementTree.fromstring(html).tag == "table"  # also as XML
+    assert [part.tag for part in ElementTree.fromstring(html)] == ["table", "p"]  # also as XML
     reader = Balance()
     reader.feed(html)
     reader.close()
     assert reader.open == []
     cells = [text for tag, text in reader.cells if tag in ("th", "td")]
-    assert cells == [cell for row in (evaluation.HEADER, *report.rows()) for cell in row]
-    assert [text for tag, text in reader.cells if tag == "caption"] == [report.scores()]
+    assert cells == [cell for row in (evaluation.REPORT_HEADER, *report.rows()) for cell in row]
+    assert [text for tag, text in reader.cells if tag == "p"] == [report.scores()]
     assert reader.tags.count("tr") == 1 + len(report.rows())
 
 
 def test_the_html_escapes_what_it_shows(monkeypatch):
-    monkeypatch.setattr(evaluation, "HEADER", ("<b>&", '"', "c", "d", "<script>"))
+    monkeypatch.setattr(evaluation, "REPORT_HEADER", ("<b>&", '"', "c", "d", "<script>"))
     monkeypatch.setattr(Report, "rows", lambda _: [("<i>", "&amp;", "1 < 2", "-", "'")])
     monkeypatch.setattr(Report, "scores", lambda _: "a < b & c")
     html = evaluate([], World())._repr_html_()

@@ -437,7 +437,7 @@ def test_letters_shrink_when_labels_find_no_room(ax):
     shapes = [Circle((x, y), 0.05) for x in np.linspace(-0.4, 0.4, 4) for y in np.linspace(-0.4, 0.4, 4)]
     world = World(shapes)
     plot_found(shapes, world, ax, evaluate(shapes, world))
-    assert {text.get_fontsize() for text in shown_labels(ax)} < set(labels.SIZES[1:])
+    assert {text.get_fontsize() for text in shown_labels(ax)} < set(labels.LABEL_SIZES[1:])
 
 
 # --- the story and its file ---------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ from primkit.formats import Drive
 from primkit.grid import Grid
 from primkit.lidar import scan
 from primkit.plots import plot_drive, save_figure
-from primkit.plots.driving import BEFORE, NEW
+from primkit.plots.driving import SEEN_BEFORE, SEEN_NEW
 from tests.helpers import exactly
 
 PICTURES = Path(__file__).resolve().parent.parent / "data" / "pictures"
@@ -39,8 +39,8 @@ def test_the_map_grows_from_frame_to_frame(n_frames):
         grid = Grid()
         grid.add(DRIVE.scans[:end])
         cells = {tuple(cell) for cell in grid.to_cells(grid.points()).tolist()}
-        assert points_in(ax, BEFORE) == known
-        assert points_in(ax, NEW) == cells - known
+        assert points_in(ax, SEEN_BEFORE) == known
+        assert points_in(ax, SEEN_NEW) == cells - known
         assert ax.get_title(loc="left").replace("\n", " ") == f"{end / 10:.1f} s: {len(cells):,} points"
         way = next(line for line in ax.lines if len(line.get_xdata()) == end)
         assert (np.column_stack(way.get_data()) == DRIVE.poses[:end, :2]).all()

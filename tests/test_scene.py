@@ -15,9 +15,9 @@ from primkit.driving.moving_grid import MovingGrid
 from primkit.measure import Detection
 from primkit.robot import AXLE, FASTEST, WHEEL, clearance
 from primkit.robust.deviations import Certainty
-from primkit.scene.finder import MOST, Finder, beside, thinned
-from primkit.scene.keys import HELD, STANDING, wheels_for
-from primkit.scene.moved_shape import NEAREST, left_within, with_one_moved
+from primkit.scene.finder import MOST_CELLS, Finder, beside, thinned
+from primkit.scene.keys import KEY_MOTIONS, STANDING_WHEELS, wheels_for
+from primkit.scene.moved_shape import LEAST_MOVED, left_within, with_one_moved
 from primkit.scene.page import drawn
 from primkit.scene.replay import Film
 from primkit.scene.scene import Scene
@@ -91,7 +91,7 @@ def scene(world):
         (["back", "right"], -0.7, -1),
         (["forward", "back"], 0, 0),
         (["left", "right", "forward"], 1, 0),
-        (list(HELD), 0, 0),
+        (list(KEY_MOTIONS), 0, 0),
     ],
 )
 def test_keys_are_speeds_of_the_wheels(held, way, turn):
@@ -111,8 +111,8 @@ def test_a_drive_is_that_of_the_library(world):
     state, wheels = DriveState(world), [wheels_for(held) for held in (["forward"], ["forward", "left"], ["left"]) * 15]
     for speeds in wheels:
         state.step(speeds)
-    state.step(STANDING)  # what is left over is looked at
-    poses, grid = pk.drive(world, [*wheels, STANDING]), pk.Grid()
+    state.step(STANDING_WHEELS)  # what is left over is looked at
+    poses, grid = pk.drive(world, [*wheels, STANDING_WHEELS]), pk.Grid()
     grid.add(pk.scan(world, poses))
     np.testing.assert_array_equal(state.pose, poses[-1])
     np.testing.assert_array_equal(state.grid.cells, grid.cells)
@@ -168,7 +168,7 @@ import gc, resource, sys, time
 import numpy as np
 import primkit as pk
 from primkit.scene.state import DriveState
-from primkit.scene.finder import MOST, Finder, beside, thinned
+from primkit.scene.finder import MOST_CELLS, Finder, beside, thinned
 from primkit.scene.keys import wheels_for
 from tests.test_scene import wandering
 
@@ -305,9 +305,9 @@ def test_of_very_many_cells_a_look_takes_a_part_and_the_last_look_all(world, mon
     for _ in range(8):
         state.grid.add(rng.uniform(-0.4, 0.4, (2000, 2)))
         state.step()
-    assert len(state.grid) > 2 * MOST
-    assert max(map(len, looked_at)) <= MOST
-    assert len(looked_at[-1]) > MOST / 2
+    assert len(state.grid) > 2 * MOST_CELLS
+    assert max(map(len, looked_at)) <= MOST_CELLS
+    assert len(looked_at[-1]) > MOST_CELLS / 2
     state.finish()
     assert len(looked_at[-1]) == len(state.grid)
 
@@ -522,7 +522,7 @@ def test_what_is_moved_keeps_clear_of_all(world):
     for _ in range(20):
         after = with_one_moved(world, pose, rng)
         old, new = the_moved(world, after)
-        assert np.hypot(*(new.centroid - old.centroid)) >= NEAREST - 1e-9
+        assert np.hypot(*(new.centroid - old.centroid)) >= LEAST_MOVED - 1e-9
         assert after.least_gap() >= 0.05
         assert clearance(after, pose[None, :2])[0] > 0
         world = after
@@ -620,7 +620,7 @@ def test_every_scan_is_written_as_it_happens(world, tmp_path):
         assert len(drive) == number
         np.testing.assert_array_equal(drive.scans.ranges[-1:], state.scan.ranges)
     np.testing.assert_array_equal(drive.poses, pk.drive(world, wheels))
-    np.testing.assert_array_equal(drive.wheels, [STANDING, *wheels])
+    np.testing.assert_array_equal(drive.wheels, [STANDING_WHEELS, *wheels])
     state.close()
 
 

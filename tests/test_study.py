@@ -30,14 +30,14 @@ from primkit.study import (
     PUBLISHED,
     Experiment,
     Line,
+    PaperTable,
     Row,
     Score,
-    Table,
+    estimate,
     experiment,
     make_folder,
     many,
     perform,
-    published,
     rows_as_csv,
     run,
     run_study,
@@ -499,7 +499,7 @@ def test_the_interval_agrees_with_scipy():
     from scipy.stats import bootstrap
 
     values = np.random.default_rng(1).uniform(0, 1, (40, 2)) ** 2
-    low, high = published.interval(values)
+    low, high = estimate.interval(values)
     for column, ends in zip(values.T, np.column_stack([low, high]), strict=True):
         theirs = bootstrap((column,), np.mean, n_resamples=5000, method="percentile", rng=2).confidence_interval
         assert ends == pytest.approx(tuple(theirs), abs=0.01)
@@ -507,9 +507,9 @@ def test_the_interval_agrees_with_scipy():
 
 def test_the_interval_does_not_depend_on_the_blocks(monkeypatch):
     values = np.random.default_rng(1).uniform(0, 1, (7, 3))
-    whole = published.interval(values)
-    monkeypatch.setattr(published, "BLOCK", 7 * 300)
-    assert np.allclose(published.interval(values), whole, rtol=0, atol=1e-12)
+    whole = estimate.interval(values)
+    monkeypatch.setattr(estimate, "COUNTS_AT_ONCE", 7 * 300)
+    assert np.allclose(estimate.interval(values), whole, rtol=0, atol=1e-12)
 
 
 def test_a_table_fits_a_plain_terminal(rows):
@@ -519,7 +519,7 @@ def test_a_table_fits_a_plain_terminal(rows):
 
 def test_a_table_s_html_says_the_same_as_its_text():
     line = Line("a < b", "A & B", "within 5 mm", 2, HALF, NONE, PERFECT, 7.7, 0.25)
-    table = Table("<One> & two", (line,), ("a & b",))
+    table = PaperTable("<One> & two", (line,), ("a & b",))
     root = ET.fromstring(f"<div>{table._repr_html_()}</div>")
     assert list(root.itertext()) == [
         *("<One> & two", "total", "shape", "centre", "dimensions", "time [s]", "a < b, 2 maps"),

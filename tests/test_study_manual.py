@@ -13,7 +13,7 @@ from primkit.lidar import Lidar, scan
 from primkit.pipeline import ROBUST
 from primkit.study import Row, Score, drives_on, rows_as_csv, run_study, seen_table, tables
 from primkit.study.experiment import Experiment, perform, run
-from primkit.study.seen_shares import shares_seen
+from primkit.study.oracle import shares_seen
 
 HALF = [(0.0, 0.0, 0.0), (0.0, 0.02, 0.0)]
 TWO = pk.World([pk.Circle((0.2, 0.0), 0.06), pk.Polygon([(-0.25, -0.2), (-0.15, -0.2), (-0.15, 0.1), (-0.25, 0.1)])])

@@ -18,25 +18,24 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..study.accuracy.table import COARSE, FINE, TRUTHS, AccuracyLine, AccuracyTable
+from ..study.accuracy.accuracy_table import COARSE, FINE, TRUTHS, AccuracyLine, AccuracyTable
 from ..study.estimate import Estimate
-from .look import BLACK, BLUE, GREEN, GREY, INK, ORANGE, PALE, PURPLE, VERMILION, check_type
+from .look import BLACK, BLUE, FIGURE_LETTERS, GREEN, GREY, INK, ORANGE, PALE, PURPLE, VERMILION, check_type
 from .story import Picture, freeze, plain
 
 PANELS = ("noise", "shapes", "scans", "spurious")  # a sweep of two levels needs no picture
 TOLERANCES = (("coarse", COARSE), ("fine", FINE))
-COLUMN, ROW = 2.5, 2.0  # inches
-HEAD = 1.3  # inches: title, legend and caption
-LEAST_WIDTH = 7.8  # inches: the title's and the legend's
-LETTERS = 9.0
+PANEL_WIDTH, PANEL_HEIGHT = 2.5, 2.0  # inches
+ACCURACY_HEAD = 1.3  # inches: title, legend and caption
+LEGEND_ROOM = 7.8  # inches: the title's and the legend's
 
 # The oracle is a broad grey line behind the others, so that a method that reaches it stays visible on it.
-LOOKS: dict[str, dict[str, Any]] = {
+METHOD_LOOKS: dict[str, dict[str, Any]] = {
     TRUTHS: {"color": GREY, "alpha": 0.4, "linestyle": "-", "linewidth": 5, "marker": "", "zorder": 2},
     "ROBUST": {"color": BLUE, "linestyle": "-", "marker": "o"},
     "PAPER": {"color": VERMILION, "linestyle": "--", "marker": "s"},
 }
-OTHERS: tuple[dict[str, Any], ...] = (
+OTHER_LOOKS: tuple[dict[str, Any], ...] = (
     {"color": GREEN, "linestyle": "-.", "marker": "^"},
     {"color": PURPLE, "linestyle": ":", "marker": "D"},
     {"color": ORANGE, "linestyle": "--", "marker": "v"},
@@ -71,17 +70,17 @@ def plot_accuracy(tables: Iterable[AccuracyTable]) -> Figure:
         got = ", ".join(t.sweep for t in tables) or "none"
         raise ValueError(f"tables must hold one of the sweeps {', '.join(PANELS)}; got {got}")
     with plain():
-        size = (max(LEAST_WIDTH, len(drawn) * COLUMN), 2 * ROW + HEAD)
+        size = (max(LEGEND_ROOM, len(drawn) * PANEL_WIDTH), 2 * PANEL_HEIGHT + ACCURACY_HEAD)
         figure = Picture(figsize=size, layout="constrained")
         axes = figure.subplots(2, len(drawn), sharey=True, sharex="col", squeeze=False)
         methods = list(dict.fromkeys(line.method for table in drawn for line in table.lines))
         for column, table in zip(axes.T, drawn, strict=True):
             for ax, (name, _) in zip(column, TOLERANCES, strict=True):
                 _draw_panel(ax, table, name, methods)
-            column[0].set_title(table.title.split(",")[0], size=LETTERS + 1, loc="left")
-            column[-1].set_xlabel(table.axis, size=LETTERS)
+            column[0].set_title(table.title.split(",")[0], size=FIGURE_LETTERS + 1, loc="left")
+            column[-1].set_xlabel(table.axis, size=FIGURE_LETTERS)
         for ax, (_, tolerance) in zip(axes[:, 0], TOLERANCES, strict=True):
-            ax.set_ylabel(f"weighted accuracy\nwithin {1000 * tolerance:g} mm", size=LETTERS)
+            ax.set_ylabel(f"weighted accuracy\nwithin {1000 * tolerance:g} mm", size=FIGURE_LETTERS)
         _frame(figure, axes[0, 0], drawn, methods)
         freeze(figure)
     return figure
@@ -103,34 +102,34 @@ def _draw_panel(ax: Axes, table: AccuracyTable, name: str, methods: Sequence[str
     ax.grid(axis="y", color=PALE, linewidth=0.5, zorder=0)
     ax.set_axisbelow(True)
     ax.set_xticks(sorted({line.x for line in table.lines}))
-    ax.tick_params(color=GREY, labelsize=LETTERS - 1)
+    ax.tick_params(color=GREY, labelsize=FIGURE_LETTERS - 1)
     ax.spines[["top", "right"]].set_visible(False)
     ax.spines[["left", "bottom"]].set_color(GREY)
 
 
 def _look(method: str, methods: Sequence[str]) -> dict[str, Any]:
     """Return a method's colour, dash and marker; one that is not known here gets its own by its place."""
-    strangers = [name for name in methods if name not in LOOKS]
-    look = LOOKS[method] if method in LOOKS else OTHERS[strangers.index(method) % len(OTHERS)]
+    strangers = [name for name in methods if name not in METHOD_LOOKS]
+    look = METHOD_LOOKS[method] if method in METHOD_LOOKS else OTHER_LOOKS[strangers.index(method) % len(OTHER_LOOKS)]
     return {"linewidth": 1.6, "markersize": 4.5, "zorder": 3} | look
 
 
 def _frame(figure: Figure, first: Axes, tables: Sequence[AccuracyTable], methods: Sequence[str]) -> None:
     """Write the finding above, and below it what the lines and bands are."""
     # The empty line below the title is the legend's room.
-    look: dict[str, Any] = {"size": LETTERS + 3, "weight": "bold", "color": INK, "linespacing": 1.8}
+    look: dict[str, Any] = {"size": FIGURE_LETTERS + 3, "weight": "bold", "color": INK, "linespacing": 1.8}
     figure.suptitle(f"{_finding(tables, methods)}\n", x=0.01, ha="left", **look)
     handles, names = first.get_legend_handles_labels()
     known = {"PAPER": "PAPER, as published (told the number of shapes)", TRUTHS: "oracle (told the side of each point)"}
     labels = [known.get(name, name) for name in names]
-    legend = figure.legend(handles, labels, ncols=len(labels), frameon=False, fontsize=LETTERS, handlelength=2.5)
-    below = 1 - 1.8 * (LETTERS + 3) / 72 / figure.get_figheight()
+    legend = figure.legend(handles, labels, ncols=len(labels), frameon=False, fontsize=FIGURE_LETTERS, handlelength=2.5)
+    below = 1 - 1.8 * (FIGURE_LETTERS + 3) / 72 / figure.get_figheight()
     legend.set(loc="upper left", in_layout=False)
     legend.set_bbox_to_anchor((0.0, below))
     counts = sorted({line.n_maps for table in tables for line in table.lines})
     n = f"{counts[0]}" if len(counts) == 1 else f"{counts[0]} to {counts[-1]}"
     text = f"{n} free maps (any rotation, irregular) for each mark. Bands: 95 % intervals over the maps (bootstrap)."
-    figure.supxlabel(text, size=LETTERS - 1, x=0.01, ha="left", color=GREY)
+    figure.supxlabel(text, size=FIGURE_LETTERS - 1, x=0.01, ha="left", color=GREY)
 
 
 def _finding(tables: Sequence[AccuracyTable], methods: Sequence[str]) -> str:

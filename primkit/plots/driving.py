@@ -30,12 +30,18 @@ from ..world import World
 from .look import BLUE, GREY, INK, PALE, VERMILION, check_type, count, draw_board, marks, patch, set_title
 from .story import Picture, freeze, plain
 
-COLUMNS = 3
-FRAME = 2.5  # inches
-HEAD = 0.8  # inches: title and legend
-BEFORE: dict[str, Any] = {"marker": "o", "color": INK, "markersize": 2.2, "markeredgewidth": 0, "linestyle": "none"}
-NEW: dict[str, Any] = BEFORE | {"color": VERMILION, "markersize": 3.4}
-WAY: dict[str, Any] = {"color": BLUE, "linewidth": 1.0}
+FRAMES_IN_A_ROW = 3
+FRAME_SIDE = 2.5  # inches
+STRIP_HEAD = 0.8  # inches: title and legend
+SEEN_BEFORE: dict[str, Any] = {
+    "marker": "o",
+    "color": INK,
+    "markersize": 2.2,
+    "markeredgewidth": 0,
+    "linestyle": "none",
+}
+SEEN_NEW: dict[str, Any] = SEEN_BEFORE | {"color": VERMILION, "markersize": 3.4}
+WAY_LOOK: dict[str, Any] = {"color": BLUE, "linewidth": 1.0}
 
 
 def plot_drive(world: World, drive: Drive, n_frames: int = 6) -> Figure:
@@ -72,10 +78,10 @@ def plot_drive(world: World, drive: Drive, n_frames: int = 6) -> Figure:
         raise ValueError("a drive must have scans to be drawn, got none")
     ends = np.linspace(0, len(drive), n_frames + 1).round().astype(int)
     points, first = _first_seen(drive)
-    columns = 2 if n_frames == 4 else min(COLUMNS, n_frames)
+    columns = 2 if n_frames == 4 else min(FRAMES_IN_A_ROW, n_frames)
     rows = -(-n_frames // columns)
     with plain():
-        figure = Picture(figsize=(max(columns * FRAME, 4.0), rows * FRAME + HEAD), layout="constrained")
+        figure = Picture(figsize=(max(columns * FRAME_SIDE, 4.0), rows * FRAME_SIDE + STRIP_HEAD), layout="constrained")
         grid = figure.subplots(rows, columns, squeeze=False).ravel()
         for number, (ax, before, end) in enumerate(zip(grid, ends, ends[1:], strict=False)):
             _draw_frame(ax, world, drive.poses[:end], points[first < end], first[first < end] >= before)
@@ -85,7 +91,7 @@ def plot_drive(world: World, drive: Drive, n_frames: int = 6) -> Figure:
             ax.remove()
         title = f"The map grows: {count(len(points), 'point')} after {len(drive) * drive.period:.1f} s"
         figure.suptitle(title, x=0.01, ha="left", size=11, weight="bold")
-        ncols = 4 if columns == COLUMNS else 2
+        ncols = 4 if columns == FRAMES_IN_A_ROW else 2
         figure.legend(handles=_legend(), loc="outside lower center", ncols=ncols, frameon=False, fontsize=8.5)
         freeze(figure)
     return figure
@@ -103,8 +109,8 @@ def _draw_frame(ax: Axes, world: World, poses: Floats, points: Floats, new: NDAr
     draw_board(ax, world.size, points)
     for shape in world.shapes:
         ax.add_patch(patch(shape, facecolor="#F2F2F2", edgecolor=PALE, linewidth=0.8, zorder=1))
-    ax.plot(*poses[:, :2].T, zorder=2, **(WAY | {"linewidth": marks(ax, 1.2)}))
-    for look, those in ((BEFORE, ~new), (NEW, new)):
+    ax.plot(*poses[:, :2].T, zorder=2, **(WAY_LOOK | {"linewidth": marks(ax, 1.2)}))
+    for look, those in ((SEEN_BEFORE, ~new), (SEEN_NEW, new)):
         ax.plot(*points[those].T, zorder=3, **(look | {"markersize": marks(ax, look["markersize"])}))
     x, y, heading = poses[-1].tolist()
     ax.add_patch(CirclePatch((x, y), BODY, facecolor="white", edgecolor=INK, linewidth=1, zorder=4))
@@ -125,8 +131,8 @@ def _keep_outer_labels(ax: Axes, *, left: bool, below: bool) -> None:
 def _legend() -> list[Line2D]:
     robot: dict[str, Any] = {"marker": "o", "markerfacecolor": "white", "markeredgecolor": INK, "markersize": 7}
     return [
-        Line2D([], [], label="seen before", **(BEFORE | {"markersize": 4})),
-        Line2D([], [], label="new in this frame", **(NEW | {"markersize": 5})),
-        Line2D([], [], label="way so far", **WAY),
+        Line2D([], [], label="seen before", **(SEEN_BEFORE | {"markersize": 4})),
+        Line2D([], [], label="new in this frame", **(SEEN_NEW | {"markersize": 5})),
+        Line2D([], [], label="way so far", **WAY_LOOK),
         Line2D([], [], label="robot", linestyle="none", color=GREY, **robot),
     ]

@@ -31,20 +31,20 @@ from .look import GREY, KIND_INKS, at_each_size, letters, width_of
 Chosen = dict[int, tuple[int, float]]  # label: its place, and what that costs
 
 # Lengths are shares of the room's larger side, and so are costs: 0.01 is as bad as lying so much farther off.
-CLEAR = 0.011  # a label keeps this far from outlines, from other labels and from the edge
-GAPS = (0.012, 0.018, 0.03, 0.05, 0.08, 0.12, 0.17, 0.24)  # how far from its shape a label may lie
-AROUND = 48  # places round the shape at each of these distances
-LEADER = 0.04  # a label farther off than this is tied to its shape by a line
-NEAR = 0.05  # a label nearer than this to another label or to a foreign shape could be taken for that one's
-NEAR_COST = 0.04
+LABEL_CLEARANCE = 0.011  # a label keeps this far from outlines, from other labels and from the edge
+LABEL_GAPS = (0.012, 0.018, 0.03, 0.05, 0.08, 0.12, 0.17, 0.24)  # how far from its shape a label may lie
+PLACES_PER_RING = 48  # places round the shape at each of these distances
+LEADER_GAP = 0.04  # a label farther off than this is tied to its shape by a line
+RIVAL_GAP = 0.05  # a label nearer than this to another label or to a foreign shape could be taken for that one's
+RIVAL_COST = 0.04
 ASIDE_COST = 0.1  # times the distance from level with the shape, or from right above or below it: for tidiness
 MISPLACED = 1.0  # the label would lie in a shape, or its line would cross another shape or label
 BLOCKED = 10.0  # the label would lie on an outline or on another label
 OUTSIDE = 20.0  # the label would not lie in the room
-FAR = 0.25  # when a label cannot be had for less, all are written smaller
-SIZES = (9.0, 8.0, 7.0, 6.0)  # of letters, points
-MANY = 20  # labels: more are written in the smallest letters at once
-ROUNDS = 4
+GOOD_COST = 0.25  # when a label cannot be had for less, all are written smaller
+LABEL_SIZES = (9.0, 8.0, 7.0, 6.0)  # of letters, points
+MANY_LABELS = 20  # labels: more are written in the smallest letters at once
+CHOICE_ROUNDS = 4
 LABEL_WIDTH = 1.6  # inches: narrower axes have no room for labels
 
 
@@ -65,7 +65,7 @@ class Ground:
 
         unit, window = float(np.ptp(room, axis=0).max()), shapely.box(*room[0], *room[1])
         whole = [_area(shape) for shape in (*labelled, *obstacles)]
-        lines = shapely.union_all([area.exterior for area in whole]).buffer(CLEAR * unit, quad_segs=2)
+        lines = shapely.union_all([area.exterior for area in whole]).buffer(LABEL_CLEARANCE * unit, quad_segs=2)
         solid = shapely.union_all(whole)
         shapely.prepare(lines)
         shapely.prepare(solid)
@@ -84,13 +84,13 @@ class Ground:
         leaders = shapely.shortest_line(boxes, area)
         gap = shapely.length(leaders) / self.unit
         aside = np.abs(middles - middles[-1]).min(axis=1) / self.unit
-        beyond = np.maximum(self.room[0] - middles, middles - self.room[1]) + box / 2 + CLEAR * self.unit > 0
+        beyond = np.maximum(self.room[0] - middles, middles - self.room[1]) + box / 2 + LABEL_CLEARANCE * self.unit > 0
         cost = gap + ASIDE_COST * aside + OUTSIDE * beyond.any(axis=1)
         cost += BLOCKED * shapely.intersects(boxes, self.outlines) + MISPLACED * shapely.intersects(boxes, self.solid)
-        cost += MISPLACED * ((gap > LEADER) & _touch(leaders, others))
+        cost += MISPLACED * ((gap > LEADER_GAP) & _touch(leaders, others))
         free = np.flatnonzero(cost < MISPLACED)
         (row, _), rival = others.query_nearest(boxes[free], return_distance=True, all_matches=False)
-        cost[free[row]] += np.maximum(gap[free[row]] + NEAR - rival / self.unit, 0)
+        cost[free[row]] += np.maximum(gap[free[row]] + RIVAL_GAP - rival / self.unit, 0)
         return Places(box, boxes, middles, leaders, gap, cost)
 
 
@@ -121,9 +121,11 @@ class Places:
         middles = np.array([other.middles[k] for other, k in others])
         reach = np.array([other.box for other, _ in others]) / 2 + self.box / 2
         apart = (np.abs(self.middles[:, None] - middles) - reach).max(axis=2) / unit  # (M, others)
-        cost = np.where(apart < CLEAR, BLOCKED, NEAR_COST * np.clip(1 - apart / NEAR, 0, 1)).sum(axis=1)
-        lines = [other.leaders[k] for other, k in others if other.gap[k] > LEADER]
-        crossed = (self.gap > LEADER) & _touch(self.leaders, shapely.STRtree([other.boxes[k] for other, k in others]))
+        cost = np.where(apart < LABEL_CLEARANCE, BLOCKED, RIVAL_COST * np.clip(1 - apart / RIVAL_GAP, 0, 1)).sum(axis=1)
+        lines = [other.leaders[k] for other, k in others if other.gap[k] > LEADER_GAP]
+        crossed = (self.gap > LEADER_GAP) & _touch(
+            self.leaders, shapely.STRtree([other.boxes[k] for other, k in others])
+        )
         return cost + MISPLACED * (crossed | _touch(self.boxes, shapely.STRtree(lines)))
 
 
@@ -160,17 +162,17 @@ def _arrange(ax: Axes, ground: Ground, texts: Sequence[Text], lines: Sequence[Li
             text.set_position((spots.middles[best, 0], spots.middles[best, 1]))
             start, end = spots.leaders[best].coords
             line.set_data(*zip(start, end, strict=True))
-            line.set_visible(bool(spots.gap[best] > LEADER))
+            line.set_visible(bool(spots.gap[best] > LEADER_GAP))
 
 
 def _fit(ax: Axes, ground: Ground, texts: Sequence[Text]) -> tuple[list[Places], Chosen]:
     """Return each text's places, and those chosen, in the largest letters with which all find a good one."""
-    for size in SIZES if len(texts) <= MANY else SIZES[-1:]:
+    for size in LABEL_SIZES if len(texts) <= MANY_LABELS else LABEL_SIZES[-1:]:
         for text in texts:
             text.set_fontsize(letters(ax, size))
         places = [ground.places(index, _box(ax, text)) for index, text in enumerate(texts)]
         chosen = _choose(places, ground.unit)
-        if max((cost for _, cost in chosen.values()), default=0.0) < FAR:
+        if max((cost for _, cost in chosen.values()), default=0.0) < GOOD_COST:
             break
     return places, chosen
 
@@ -189,14 +191,14 @@ def _area(shape: Shape) -> Any:
 
 
 def _around(area: Any, box: Floats, unit: float) -> Floats:
-    """Return the middles of boxes that lie round an area at the distances of GAPS; last, at worst, the area's own."""
+    """Return the middles of boxes that lie round an area at the distances of LABEL_GAPS; the last is its own."""
     import shapely
 
     # A box touches a convex area when its middle lies on the outline of the area widened by half the box.
     corners = shapely.get_coordinates(area)[:, None] + np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * box / 2
     touching = shapely.convex_hull(shapely.multipoints(corners.reshape(-1, 2)))
-    rings = np.repeat(shapely.get_exterior_ring(shapely.buffer(touching, np.array(GAPS) * unit)), AROUND)
-    stops = np.tile(np.arange(AROUND) / AROUND, len(GAPS))
+    rings = np.repeat(shapely.get_exterior_ring(shapely.buffer(touching, np.array(LABEL_GAPS) * unit)), PLACES_PER_RING)
+    stops = np.tile(np.arange(PLACES_PER_RING) / PLACES_PER_RING, len(LABEL_GAPS))
     places = shapely.line_interpolate_point(rings, stops, normalized=True)
     return shapely.get_coordinates([*places, area.centroid])
 
@@ -205,7 +207,7 @@ def _choose(places: Sequence[Places], unit: float) -> Chosen:
     """Return each label's place and its cost: the label with the fewest choices goes first, then each chooses anew."""
     order = sorted(range(len(places)), key=lambda i: int((places[i].cost < MISPLACED).sum()))
     chosen: Chosen = {}
-    for _ in range(ROUNDS):
+    for _ in range(CHOICE_ROUNDS):
         before = dict(chosen)
         for i in order:
             chosen[i] = _best(places, i, chosen, unit)

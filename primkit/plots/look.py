@@ -45,10 +45,11 @@ KIND_MARKERS: dict[Kind, str] = {"circle": "o", "triangle": "^", "rectangle": "s
 CLUSTER_COLORS = (ORANGE, SKY, BLACK, PURPLE, VERMILION, BLUE, GREEN)
 CLUSTER_MARKERS = ("D", "v", "P", "X", "<", "*")
 
-MARGIN = 0.03  # of the board's size, left free around it
-BAND = 0.06  # of the board's size, left free above it for a legend
+BOARD_MARGIN = 0.03  # of the board's size, left free around it
+LEGEND_BAND = 0.06  # of the board's size, left free above it for a legend
 FULL_WIDTH = 3.5  # inches: in narrower axes all letters are smaller
 LEAST_LETTERS = 5.0  # points
+FIGURE_LETTERS = 9.0  # points: in figures of a fixed size
 LEAST_COLUMNS = 10  # letters: a title is not broken into shorter lines
 LEGEND_WIDTH = 2.6  # inches: narrower axes have no room for a legend
 
@@ -86,8 +87,8 @@ def draw_board(ax: Axes, size: float, points: Floats | None = None, *, legend: b
     ax.add_patch(Rectangle((-half, -half), size, size, facecolor="white", edgecolor=INK, linewidth=1, zorder=0.5))
     inside = np.vstack([[(-half, -half), (half, half)], np.empty((0, 2)) if points is None else points])
     room = np.array([inside.min(axis=0), inside.max(axis=0)])
-    (left, low), (right, high) = room + np.array([[-MARGIN], [MARGIN]]) * size
-    ax.set(xlim=(left, right), ylim=(low, high + legend * BAND * (right - left)), aspect="equal")
+    (left, low), (right, high) = room + np.array([[-BOARD_MARGIN], [BOARD_MARGIN]]) * size
+    ax.set(xlim=(left, right), ylim=(low, high + legend * LEGEND_BAND * (right - left)), aspect="equal")
     for axis, name in ((ax.xaxis, "x [m]"), (ax.yaxis, "y [m]")):
         axis.set_label_text(name, fontsize=letters(ax, 10))
         axis.set_major_locator(MaxNLocator(5))

@@ -22,7 +22,7 @@ from ..driving import Exploration
 from ..world import World
 from .look import GREY, INK, ORANGE, as_axes, check_type, draw_areas, draw_board, draw_legend, marks, patch, set_title
 
-GHOST = 0.004  # m: a point farther than this from every outline belongs to nothing that is there
+GHOST_GAP = 0.004  # m: a point farther than this from every outline belongs to nothing that is there
 
 
 def plot_tour(world: World, tour: Exploration, ax: Axes | None = None) -> Axes:
@@ -77,7 +77,7 @@ def plot_change(before: World, after: World, points: ArrayLike, ax: Axes | None 
     off = np.full(len(points), np.inf)
     for shape in after.shapes:
         off = np.minimum(off, np.abs(shape.signed_distance(points)))
-    ghost = off > GHOST
+    ghost = off > GHOST_GAP
     draw_board(ax, after.size, points, legend=True)
     draw_areas(ax, after.shapes)
     dashed: dict[str, Any] = {"fill": False, "edgecolor": GREY, "linestyle": "--", "linewidth": marks(ax, 1.2)}

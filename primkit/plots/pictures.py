@@ -49,7 +49,7 @@ from .look import (
 )
 
 ROBOT_RADIUS = 0.037  # m: the e-puck's body
-SIGNS = 6  # larger markers on each cluster, so that it can be told from the others without colour
+SIGNS_PER_CLUSTER = 6  # larger markers on each cluster, so that it can be told from the others without colour
 
 
 def plot_world(world: World, ax: Axes | None = None) -> Axes:
@@ -235,7 +235,7 @@ def _draw_cluster(ax: Axes, cluster: Floats, number: int) -> None:
     color, marker = CLUSTER_COLORS[number % len(CLUSTER_COLORS)], CLUSTER_MARKERS[number % len(CLUSTER_MARKERS)]
     middle = cluster.mean(axis=0)
     around = cluster[np.argsort(np.arctan2(*(cluster - middle).T))]
-    signs = around[:: -(-len(cluster) // SIGNS)]
+    signs = around[:: -(-len(cluster) // SIGNS_PER_CLUSTER)]
     ax.plot(*cluster.T, "o", color=color, markersize=marks(ax, 3), markeredgewidth=0)
     sign = ax.plot(*signs.T, marker, color=color, markersize=marks(ax, 7))[0]
     sign.set(markeredgecolor="white", markeredgewidth=marks(ax, 0.5))

@@ -27,8 +27,8 @@ from .found import plot_found
 from .look import check_type, count, set_title
 from .pictures import plot_clusters, plot_points, plot_scan, plot_world
 
-DPI = 200
-LAYOUTS = 4  # the layout comes nearer to its goal each time
+PICTURE_DPI = 200
+LAYOUT_ROUNDS = 4  # the layout comes nearer to its goal each time
 
 
 class Picture(Figure):
@@ -114,7 +114,7 @@ def freeze(figure: Figure) -> None:
     """Lay the figure out once and for all: else each drawing moves things by a hair, and its bytes change."""
     engine = figure.get_layout_engine()
     assert engine is not None
-    for _ in range(LAYOUTS):
+    for _ in range(LAYOUT_ROUNDS):
         engine.execute(figure)
     figure.set_layout_engine("none")
 
@@ -157,6 +157,6 @@ def save_figure(figure: Figure, path: StrPath) -> None:
 
 def _png(figure: Figure) -> bytes:
     buffer = io.BytesIO()
-    with plain():
-        figure.savefig(buffer, format="png", dpi=DPI, metadata={"Software": None})  # a version would change the bytes
+    with plain():  # no metadata: a version would change the bytes
+        figure.savefig(buffer, format="png", dpi=PICTURE_DPI, metadata={"Software": None})
     return buffer.getvalue()

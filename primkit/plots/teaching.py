@@ -15,17 +15,16 @@ from collections.abc import Iterator, Sequence
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .look import BLUE, GREY, INK, PALE, count
+from .look import BLUE, FIGURE_LETTERS, GREY, INK, PALE, count
 from .story import Picture, freeze, plain
 
 Part = tuple[str, str, float, tuple[str, int]]
 Row = tuple[str, float | None, tuple[str, int]]  # a heading has no share
 
-WIDTH, HEAD, ROW = 9.0, 1.3, 0.3  # inches
-CLEAR = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}  # behind words, for the grid not to cross them
-TITLE = 84  # letters in a line of the title
-LETTERS = 9.0
-MOST = 46  # letters of a wrong answer's name
+CLASS_WIDTH, CLASS_HEAD, BAR_HEIGHT = 9.0, 1.3, 0.3  # inches
+WORD_BOX = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}  # behind words, for the grid not to cross them
+TITLE_LETTERS = 84  # letters in a line of the title
+FAULT_LETTERS = 46  # letters of a wrong answer's name
 
 
 def class_figure(name: str, students: int, parts: Sequence[Part]) -> Figure:
@@ -49,9 +48,9 @@ def class_figure(name: str, students: int, parts: Sequence[Part]) -> Figure:
         raise ValueError("parts must hold at least one part of a problem set")
     rows = list(_rows(parts))
     with plain():
-        figure = Picture(figsize=(WIDTH, HEAD + ROW * len(rows)), layout="constrained")
-        title = textwrap.fill(_words(_finding(name, students, parts)), TITLE)
-        figure.suptitle(title, x=0.01, ha="left", size=LETTERS + 2.5, weight="bold")
+        figure = Picture(figsize=(CLASS_WIDTH, CLASS_HEAD + BAR_HEIGHT * len(rows)), layout="constrained")
+        title = textwrap.fill(_words(_finding(name, students, parts)), TITLE_LETTERS)
+        figure.suptitle(title, x=0.01, ha="left", size=FIGURE_LETTERS + 2.5, weight="bold")
         _draw_bars(figure.add_subplot(), rows)
         freeze(figure)
     return figure
@@ -83,25 +82,25 @@ def _draw_bars(ax: Axes, rows: Sequence[Row]) -> None:
             (5, 0),
             textcoords="offset points",
             va="center",
-            fontsize=LETTERS,
+            fontsize=FIGURE_LETTERS,
             color=INK,
-            bbox=CLEAR,
+            bbox=WORD_BOX,
         )
-    ax.set_yticks(range(len(rows)), [_words(name) for name, _, _ in rows], fontsize=LETTERS)
+    ax.set_yticks(range(len(rows)), [_words(name) for name, _, _ in rows], fontsize=FIGURE_LETTERS)
     for label, (_, right, _) in zip(ax.get_yticklabels(), rows, strict=True):
         label.set_fontweight("bold" if right is None else "normal")
     ax.set(xlim=(0, 200), ylim=(len(rows) - 0.4, -0.6))  # the right half is for words
     ax.set_xticks([0, 25, 50, 75, 100])
-    ax.set_xlabel("share of right answers [%]", fontsize=LETTERS + 1, x=0.25)
+    ax.set_xlabel("share of right answers [%]", fontsize=FIGURE_LETTERS + 1, x=0.25)
     ax.grid(axis="x", color=PALE, linewidth=0.6)
     ax.set_axisbelow(True)
     ax.spines[["top", "right", "bottom"]].set_visible(False)
-    ax.tick_params(color=GREY, labelsize=LETTERS)
+    ax.tick_params(color=GREY, labelsize=FIGURE_LETTERS)
     ax.tick_params(axis="y", length=0)
 
 
 def _short(fault: str) -> str:
-    return textwrap.shorten(fault, MOST, placeholder=" ...")
+    return textwrap.shorten(fault, FAULT_LETTERS, placeholder=" ...")
 
 
 def _words(text: str) -> str:

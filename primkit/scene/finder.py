@@ -32,9 +32,9 @@ from ..pipeline import Memory, find_shapes
 P = ParamSpec("P")
 T = TypeVar("T")
 
-MOST = 6000  # cells: a look at so many takes a quarter of a second; only noise makes more
-FEWER = 0.8  # times the share, where it is still too large: seldom, as each new share makes all fits anew
-MIXERS = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F)  # odd and large, so that neighbours have nothing in common
+MOST_CELLS = 6000  # cells: a look at so many takes a quarter of a second; only noise makes more
+SHARE_STEP = 0.8  # times the share, where it is still too large: seldom, as each new share makes all fits anew
+HASH_FACTORS = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F)  # odd and large, so that neighbours have nothing in common
 
 
 class AtOnce(Executor):
@@ -71,7 +71,7 @@ class Look:
     n_scans: int
 
 
-def thinned(cells: Ints, most: int = MOST) -> Bools:
+def thinned(cells: Ints, most: int = MOST_CELLS) -> Bools:
     """Tell which cells are looked at when there are too many: a share of them, as if by chance, shape (N,).
 
     A cell is chosen or not whatever else there is: as long as the share stays the same, a map that grows stays a map
@@ -83,12 +83,12 @@ def thinned(cells: Ints, most: int = MOST) -> Bools:
     >>> [int(thinned(cells[:n], 4000).sum()) for n in (4000, 10_000)]
     [4000, 3269]
     """
-    mixed = cells.astype(np.uint64) @ np.array(MIXERS, dtype=np.uint64)
+    mixed = cells.astype(np.uint64) @ np.array(HASH_FACTORS, dtype=np.uint64)
     mixed ^= mixed >> np.uint64(29)
-    lot = ((mixed * np.uint64(MIXERS[0])) >> np.uint64(40)) / 2.0**24  # 0 to 1, evenly
+    lot = ((mixed * np.uint64(HASH_FACTORS[0])) >> np.uint64(40)) / 2.0**24  # 0 to 1, evenly
     share, chosen = 1.0, np.ones(len(cells), dtype=bool)
     while np.count_nonzero(chosen) > most:
-        share *= FEWER
+        share *= SHARE_STEP
         chosen = lot < share
     return chosen
 

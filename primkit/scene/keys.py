@@ -13,9 +13,9 @@ from collections.abc import Iterable
 
 from ..robot import FASTEST
 
-TURNING = 0.6  # of the greatest speed: by how much one wheel is faster than the other when turning
-STANDING = (0.0, 0.0)  # rad/s: wheels that stand still
-HELD = {"forward": (1, 0), "back": (-1, 0), "left": (0, 1), "right": (0, -1)}  # onwards, counter-clockwise
+TURNING_SHARE = 0.6  # of the greatest speed: by how much one wheel is faster than the other when turning
+STANDING_WHEELS = (0.0, 0.0)  # rad/s: wheels that stand still
+KEY_MOTIONS = {"forward": (1, 0), "back": (-1, 0), "left": (0, 1), "right": (0, -1)}  # onwards, counter-clockwise
 
 
 def wheels_for(held: Iterable[str]) -> tuple[float, float]:
@@ -39,8 +39,8 @@ def wheels_for(held: Iterable[str]) -> tuple[float, float]:
     [-1.884, 1.884, 2.512, 6.28]
     """
     words = set(held)
-    if not words <= HELD.keys():
-        raise ValueError(f"held must be among {', '.join(HELD)}, got {sorted(words - HELD.keys())[0]!r}")
-    ahead, turn = (sum(HELD[word][i] for word in words) for i in (0, 1))
-    middle = ahead * (1 - abs(turn) * TURNING / 2)  # so that the faster wheel is not too fast
-    return FASTEST * (middle - turn * TURNING / 2), FASTEST * (middle + turn * TURNING / 2)
+    if not words <= KEY_MOTIONS.keys():
+        raise ValueError(f"held must be among {', '.join(KEY_MOTIONS)}, got {sorted(words - KEY_MOTIONS.keys())[0]!r}")
+    ahead, turn = (sum(KEY_MOTIONS[word][i] for word in words) for i in (0, 1))
+    middle = ahead * (1 - abs(turn) * TURNING_SHARE / 2)  # so that the faster wheel is not too fast
+    return FASTEST * (middle - turn * TURNING_SHARE / 2), FASTEST * (middle + turn * TURNING_SHARE / 2)

@@ -7,7 +7,7 @@ Out: another ``World``, in which one shape stands elsewhere; or None where there
 >>> before = World([Circle((0.2, 0.0), 0.05)])
 >>> after = with_one_moved(before, np.zeros(3), np.random.default_rng(0))
 >>> way = after.shapes[0].centroid - before.shapes[0].centroid
->>> bool(NEAREST <= np.hypot(*way) <= FARTHEST)
+>>> bool(LEAST_MOVED <= np.hypot(*way) <= MOST_MOVED)
 True
 """
 
@@ -25,13 +25,13 @@ from ..shapes import Shape
 from ..world import World, gap_between
 from .page import share_seen
 
-NEAREST, FARTHEST = 0.08, 0.2  # m: how far a shape is moved
-TURNED = 0.5  # rad: by how much it is turned at most, either way
-ROOM = 0.08  # m between shapes: the body is 7.4 cm wide
-EDGE = 0.1  # m from the edge of the board: the sensor sees round a shape only from the board
-TRIES = 500
-DEEP = 0.012  # m: who lies so deep within a shape is not of its outline
-MOSTLY = 0.6  # of an outline: who has seen so much of it may say what lies within
+LEAST_MOVED, MOST_MOVED = 0.08, 0.2  # m: how far a shape is moved
+MOST_TURNED = 0.5  # rad: by how much it is turned at most, either way
+SHAPE_GAP = 0.08  # m between shapes: the body is 7.4 cm wide
+EDGE_GAP = 0.1  # m from the edge of the board: the sensor sees round a shape only from the board
+MOVE_TRIES = 500
+WITHIN_DEPTH = 0.012  # m: who lies so deep within a shape is not of its outline
+MOSTLY_SEEN = 0.6  # of an outline: who has seen so much of it may say what lies within
 
 
 def with_one_moved(world: World, pose: Floats, rng: np.random.Generator) -> World | None:
@@ -48,10 +48,10 @@ def with_one_moved(world: World, pose: Floats, rng: np.random.Generator) -> Worl
     """
     if not world.shapes:
         return None
-    for _ in range(TRIES):
+    for _ in range(MOVE_TRIES):
         chosen, bearing = int(rng.integers(len(world.shapes))), rng.uniform(0, 2 * np.pi)
-        way = rng.uniform(NEAREST, FARTHEST) * np.array([np.cos(bearing), np.sin(bearing)])
-        new = world.shapes[chosen].moved(way, rng.uniform(-TURNED, TURNED))
+        way = rng.uniform(LEAST_MOVED, MOST_MOVED) * np.array([np.cos(bearing), np.sin(bearing)])
+        new = world.shapes[chosen].moved(way, rng.uniform(-MOST_TURNED, MOST_TURNED))
         rest = [shape for number, shape in enumerate(world.shapes) if number != chosen]
         if _has_room(new, rest, world.size, pose):
             return World([*rest[:chosen], new, *rest[chosen:]], size=world.size)
@@ -60,7 +60,9 @@ def with_one_moved(world: World, pose: Floats, rng: np.random.Generator) -> Worl
 
 def _has_room(shape: Shape, rest: list[Shape], size: float, pose: Floats) -> bool:
     """Tell whether a shape keeps its distance to the others, to the edge, and to the robot."""
-    if np.abs(shape.outline(100)).max() > size / 2 - EDGE or any(gap_between(shape, one) < ROOM for one in rest):
+    if np.abs(shape.outline(100)).max() > size / 2 - EDGE_GAP:
+        return False
+    if any(gap_between(shape, one) < SHAPE_GAP for one in rest):
         return False
     return float(clearance(World([shape], size=size), pose[None, :2])[0]) > 10 * CLEAR
 
@@ -79,7 +81,7 @@ def left_within(grid: MovingGrid, found: Iterable[Detection]) -> Bools:
     left = np.zeros(len(points), dtype=bool)
     for one in found:
         apart = one.shape.signed_distance(points)
-        own = np.abs(apart) <= DEEP
-        if own.any() and share_seen(one) >= MOSTLY:
-            left |= (apart < -DEEP) & (last < np.median(last[own]))
+        own = np.abs(apart) <= WITHIN_DEPTH
+        if own.any() and share_seen(one) >= MOSTLY_SEEN:
+            left |= (apart < -WITHIN_DEPTH) & (last < np.median(last[own]))
     return left

@@ -25,8 +25,8 @@ from ..shapes import Circle, Shape
 
 Message = dict[str, Any]
 
-COLORS = {"ink": INK, "grey": GREY, "pale": PALE, "beam": SKY, "hit": ORANGE}
-FAR = 1e-4  # m: lengths go to the page in tenths of a millimetre
+PAGE_COLORS = {"ink": INK, "grey": GREY, "pale": PALE, "beam": SKY, "hit": ORANGE}
+TENTH = 1e-4  # m: lengths go to the page in tenths of a millimetre
 
 
 def page(*names: str) -> str:
@@ -37,12 +37,12 @@ def page(*names: str) -> str:
 def board_and_look(size: float, lidar: Lidar, cell: float) -> Message:
     """Return what stays the same while the robot drives: the board in metres, and the colours."""
     board = {"size": size, "body": BODY, "reach": lidar.range_max, "cell": cell}
-    return {"board": board, "look": {"colors": COLORS, "kinds": KIND_COLORS, "inks": KIND_INKS}}
+    return {"board": board, "look": {"colors": PAGE_COLORS, "kinds": KIND_COLORS, "inks": KIND_INKS}}
 
 
 def told_ranges(ranges: Floats) -> list[int]:
     """Return ranges in tenths of a millimetre, and -1 where nothing was hit."""
-    told: list[int] = np.where(np.isfinite(ranges), np.rint(ranges / FAR), -1).astype(int).tolist()
+    told: list[int] = np.where(np.isfinite(ranges), np.rint(ranges / TENTH), -1).astype(int).tolist()
     return told
 
 
@@ -101,5 +101,5 @@ def _name(one: Detection) -> str:
 
 def tenths(points: Floats) -> list[list[int]]:
     """Return points in tenths of a millimetre: short to send, and finer than a screen."""
-    told: list[list[int]] = np.rint(points / FAR).astype(int).tolist()
+    told: list[list[int]] = np.rint(points / TENTH).astype(int).tolist()
     return told

@@ -30,11 +30,11 @@ from ..grid import Grid
 from ..measure import Detection
 from ..pipeline import Memory, find_shapes
 from ..world import World
-from .page import FAR, Message, board_and_look, drawn, page, ring_of, tenths
+from .page import TENTH, Message, board_and_look, drawn, page, ring_of, tenths
 
-GROWN = 1.2  # so many times the cells are worth another look
+GROWTH = 1.2  # so many times the cells are worth another look
 NO_HIT = -1
-FARTHEST = 32_767  # tenths of a millimetre: ranges go to the page as whole numbers of 16 bits
+MOST_RANGE = 32_767  # tenths of a millimetre: ranges go to the page as whole numbers of 16 bits
 
 
 def replay(drive: Drive, world: World | None = None, *, rng: int = 0) -> Replay:
@@ -108,7 +108,7 @@ class Film:
         memory: Memory = {}
         looks, n_looked_at, last = [], 0, len(self.known) - 1
         for number, n in enumerate(self.known.tolist()):
-            if n > n_looked_at and (n >= GROWN * n_looked_at or number == last):
+            if n > n_looked_at and (n >= GROWTH * n_looked_at or number == last):
                 points = grid.to_points(self.cells[:n])
                 looks.append(Shown(number, find_shapes(points, memory=memory, rng=rng)))
                 n_looked_at = n
@@ -162,5 +162,5 @@ class Replay(anywidget.AnyWidget):
     def _ranges(self) -> NDArray[np.int16]:
         """Return ranges in tenths of a millimetre, shape (P, B), -1 where nothing was hit."""
         ranges = self.drive.scans.ranges
-        told = np.where(np.isfinite(ranges), np.rint(ranges / FAR), NO_HIT)
-        return np.minimum(told, FARTHEST).astype("<i2")
+        told = np.where(np.isfinite(ranges), np.rint(ranges / TENTH), NO_HIT)
+        return np.minimum(told, MOST_RANGE).astype("<i2")

@@ -6,15 +6,15 @@ Out: ``Run``, one for each way to move; together a ``Comparison``, which prints 
 >>> from primkit.shapes import Circle
 >>> world = World([Circle((0.2, 0.1), 0.06)])
 >>> Comparison((from_waypoints(world, Lidar(), 0), by_exploring(world, Lidar(), 0)))
-             scans  robot time  found  score
-way-points      76       7.7 s      1   1.00 (the robot is set down at each; the ways between are not counted)
-explore         15      59.0 s      1   1.00 (it drives, stands still, and scans)
+            scans  robot time  found  score
+----------  -----  ----------  -----  -----  ---------------------------------------------------------------
+way-points  76     7.7 s       1      1.00   the robot is set down at each; the ways between are not counted
+explore     15     59.0 s      1      1.00   it drives, stands still, and scans
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from html import escape
 
 from ..arguments import Floats
 from ..driving import explore
@@ -23,9 +23,8 @@ from ..grid import Grid
 from ..lidar import Lidar, scan
 from ..pipeline import find_shapes
 from ..robot import teleport_poses, waypoints
+from ..table import Table
 from ..world import World
-
-HEADER = ("", "scans", "robot time", "found", "score")
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +59,8 @@ class Run:
 
     def cells(self) -> tuple[str, ...]:
         """Return the run as texts, one for each column of the table."""
-        return (self.name, f"{self.n_scans:,}", f"{self.robot_time:.1f} s", f"{self.n_found}", f"{self.score:.2f}")
+        time, score = f"{self.robot_time:.1f} s", f"{self.score:.2f}"
+        return self.name, f"{self.n_scans:,}", time, str(self.n_found), score, self.note
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,21 +69,15 @@ class Comparison:
 
     runs: tuple[Run, ...]
 
-    def texts(self) -> list[tuple[str, ...]]:
-        """Return the table as texts: the names of the columns, then a line for each run, what its time is the last."""
-        return [(*HEADER, ""), *((*run.cells(), run.note) for run in self.runs)]
+    def table(self) -> Table:
+        """Return a row for each run."""
+        return Table(("", "scans", "robot time", "found", "score", ""), [run.cells() for run in self.runs])
 
     def __repr__(self) -> str:
-        rows = [(*run.cells(), f"({run.note})") for run in self.runs]
-        return "\n".join(
-            f"{name:10}  {scans:>6}  {time:>10}  {found:>5}  {score:>5} {note}".rstrip()
-            for name, scans, time, found, score, note in [(*HEADER, ""), *rows]
-        )
+        return str(self.table())
 
     def _repr_html_(self) -> str:
-        head = "".join(f"<th>{escape(word)}</th>" for word in HEADER)
-        rows = ("".join(f"<td>{escape(text)}</td>" for text in (*run.cells(), run.note)) for run in self.runs)
-        return f"<table><tr>{head}<th></th></tr>{''.join(f'<tr>{row}</tr>' for row in rows)}</table>"
+        return self.table()._repr_html_()
 
 
 def from_waypoints(world: World, lidar: Lidar, rng: int) -> Run:

@@ -34,7 +34,7 @@ from .page import Message, board_and_look, drawn, page, ring_of, tenths, told_ra
 from .runs import Comparison
 from .state import DriveState, automatic_runs
 
-OLD = 5  # scans: outlines that know all scans but so many are as good as new
+FRESH_SCANS = 5  # scans: outlines that know all scans but so many are as good as new
 
 
 def drive_scene(
@@ -190,7 +190,7 @@ class Scene(anywidget.AnyWidget):
         state = self.state
         driven = f"{state.time:.1f} s · {state.n_scans:,} scan{'s' * (state.n_scans != 1)}"
         age = state.n_scans - state.n_scans_found
-        old = f" · shapes {age} scans old" if age > OLD and state.looks else ""
+        old = f" · shapes {age} scans old" if age > FRESH_SCANS and state.looks else ""
         return f"{driven} · {len(state.found)} found · score {state.score:.2f}{old}"
 
     def _now(self) -> Message:
@@ -247,9 +247,9 @@ class Scene(anywidget.AnyWidget):
             self._automatic = None
             return {"say": f"The robot cannot drive by itself here: {type(error).__name__}: {error}"}
         places = {run.name: tenths(run.way) for run in automatic}
-        runs = Comparison((self.state.by_hand(), *automatic))
+        table = Comparison((self.state.by_hand(), *automatic)).table()
         say = {} if self._compared else {"say": "The robot has driven by itself, too: see the table."}
-        self._compared = {"table": runs.texts(), "places": places}
+        self._compared = {"table": [table.header, *table.rows], "places": places}
         return {"automatic": self._compared} | say
 
     def close(self) -> None:

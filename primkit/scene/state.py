@@ -42,13 +42,13 @@ from ..lidar import Lidar, Scans, scan
 from ..measure import Detection
 from ..robot import advance, start_pose
 from ..world import World
-from .finder import MOST, AtOnce, Finder, thinned
-from .keys import STANDING
+from .finder import MOST_CELLS, AtOnce, Finder, thinned
+from .keys import STANDING_WHEELS
 from .moved_shape import left_within, with_one_moved
 from .runs import Comparison, Run, by_exploring, from_waypoints
 
-NEWS = 0.01  # when this share of the cells has come or gone since the last look, it is time for another
-FAR = 1 << 31  # cells: farther apart than any two on a board
+NEWS_SHARE = 0.01  # when this share of the cells has come or gone since the last look, it is time for another
+KEY_STRIDE = 1 << 31  # cells: farther apart than any two on a board
 T = TypeVar("T")
 
 
@@ -141,7 +141,7 @@ class DriveState:
         self._scan()
         self.map()
 
-    def step(self, wheels: ArrayLike = STANDING) -> Step:
+    def step(self, wheels: ArrayLike = STANDING_WHEELS) -> Step:
         """Turn the wheels for a period, scan, and map: ``move`` and ``map`` together.
 
         Parameters
@@ -162,7 +162,7 @@ class DriveState:
         new, gone = self.move(wheels)
         return Step(new, gone, self.stopped, self.map())
 
-    def move(self, wheels: ArrayLike = STANDING) -> tuple[Ints, Ints]:
+    def move(self, wheels: ArrayLike = STANDING_WHEELS) -> tuple[Ints, Ints]:
         """Turn the wheels for a period and scan; return the cells that are new and that are gone, shapes (M, 2)."""
         self.pose, self.stopped = advance(self.world, self.pose, wheels, self.lidar.period)
         before = self.scan
@@ -180,13 +180,13 @@ class DriveState:
             Whatever ended the look, if it could not be finished.
         """
         done = self._fetch()
-        enough = 0 < self._n_news >= (0 if self._rests else NEWS * len(self.grid))
+        enough = 0 < self._n_news >= (0 if self._rests else NEWS_SHARE * len(self.grid))
         if enough and not self._finder.busy:
             self._begin_look()
             done = self._fetch() or done
         return done
 
-    def _begin_look(self, most: int = MOST) -> None:
+    def _begin_look(self, most: int = MOST_CELLS) -> None:
         """Have the map looked at, or so many of its cells."""
         cells = self.grid.cells
         self._n_news = 0
@@ -259,7 +259,7 @@ class DriveState:
         check_type(world, World, "world must be a World")
         if world.size != self.world.size:
             raise ValueError(f"the board must stay {self.world.size:g} m wide, got {world.size:g} m")
-        advance(world, self.pose, STANDING, 0)  # refuses a place in a shape
+        advance(world, self.pose, STANDING_WHEELS, 0)  # refuses a place in a shape
         self.world = world
 
     @property
@@ -301,7 +301,7 @@ class DriveState:
         try:
             if self._written is None:
                 self._written = _opened(self.journal, self.lidar)
-                self._written.add(before, STANDING)
+                self._written.add(before, STANDING_WHEELS)
             self._written.add(self.scan, wheels)
         except (OSError, ValueError) as error:  # a full disk ends the record, not the drive
             self.trouble = str(error)
@@ -331,7 +331,7 @@ def automatic_runs(world: World, lidar: Lidar, rng: int) -> tuple[Run, Run]:
 
 def _only_in(cells: Ints, others: Ints) -> Ints:
     """Return the cells that are not among the others, shape (M, 2); in both no cell stands twice."""
-    one, other = (each[:, 0] * FAR + each[:, 1] for each in (cells, others))
+    one, other = (each[:, 0] * KEY_STRIDE + each[:, 1] for each in (cells, others))
     return cells[np.isin(one, other, assume_unique=True, invert=True)]
 
 

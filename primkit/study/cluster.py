@@ -19,8 +19,8 @@ import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-PATIENCE = 10.0  # s, for a scheduler to answer and for a first worker to join it
-HOW_TO = 'pip install -e ".[cluster]"'
+ANSWER_TIMEOUT = 10.0  # s, for a scheduler to answer and for a first worker to join it
+INSTALL_DASK = 'pip install -e ".[cluster]"'
 
 
 @contextmanager
@@ -53,17 +53,17 @@ def on_cluster(address: str) -> Iterator[None]:
     try:
         from dask.distributed import Client
     except ModuleNotFoundError:
-        raise ValueError(f"a cluster needs dask, which is not installed: {HOW_TO}") from None
+        raise ValueError(f"a cluster needs dask, which is not installed: {INSTALL_DASK}") from None
     from joblib import parallel_config
 
     with _silence():  # while it tries, dask reports each attempt
         try:
-            client = Client(address, timeout=PATIENCE, set_as_default=False)
+            client = Client(address, timeout=ANSWER_TIMEOUT, set_as_default=False)
         except OSError:
             raise ConnectionError(f"no scheduler answers at {address}: start one with `dask scheduler`") from None
     with client:
         try:
-            client.wait_for_workers(1, timeout=PATIENCE)
+            client.wait_for_workers(1, timeout=ANSWER_TIMEOUT)
         except TimeoutError:
             told = f"the scheduler at {address} has no workers: start some with `dask worker {address}`"
             raise ConnectionError(told) from None

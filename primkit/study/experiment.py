@@ -42,12 +42,11 @@ from ..pipeline import Settings, find_shapes
 from ..robot import teleport_poses, waypoints
 from ..shapes import Circle, Kind
 from ..world import World
-from .oracle import Oracle, oracle_fit, told_points
+from .oracle import Oracle, oracle_fit, shares_seen, told_points
 from .row import Row, Score
-from .seen_shares import shares_seen
 
 # Another version of these may draw or compute other numbers.
-LIBRARIES = ("numpy", "scipy", "scikit-learn", "shapely")
+NUMERIC_LIBRARIES = ("numpy", "scipy", "scikit-learn", "shapely")
 
 
 @dataclass(frozen=True, eq=False)
@@ -237,7 +236,7 @@ def program() -> str:
     # The package itself is loaded before any of its modules; importing it from here would turn the story round.
     package = sys.modules[__name__.partition(".")[0]]
     own = f"primkit {package.__version__} {hashlib.sha256(text).hexdigest()[:16]}"
-    return ", ".join([own, *(f"{library} {version(library)}" for library in LIBRARIES)])
+    return ", ".join([own, *(f"{library} {version(library)}" for library in NUMERIC_LIBRARIES)])
 
 
 def _as_text(world: World) -> str:

@@ -21,7 +21,7 @@ import os
 import signal
 import sys
 import warnings
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sized
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sized
 from contextlib import closing, contextmanager
 from functools import cache
 from multiprocessing import resource_tracker
@@ -32,7 +32,7 @@ from typing import Any, TypeVar
 
 from numpy.typing import ArrayLike
 
-from ..arguments import as_count, as_poses, as_positive
+from ..arguments import as_count, as_poses, as_positive, check_type
 from ..formats import MAP_ENDINGS, StrPath, load_world, paper_suite
 from ..lidar import Lidar
 from ..pipeline import PAPER, ROBUST, Settings
@@ -104,13 +104,13 @@ def run_study(
     []
     """
     common = {
-        "lidar": _checked(Lidar() if lidar is None else lidar, Lidar, "lidar"),
+        "lidar": Lidar() if lidar is None else lidar,
         "tolerance": as_positive(tolerance, "tolerance", zero=True),
         "seed": as_count(seed, "seed", least=0),
     }
+    check_type(common["lidar"], Lidar, "lidar must be Lidar")
     for chosen in settings.values():
-        if not isinstance(chosen, Oracle):
-            _checked(chosen, Settings, "each of the settings")
+        check_type(chosen, (Settings, Oracle), "each of the settings must be Settings")
     jobs, worlds = checked_jobs(jobs), paper_suite() if worlds is None else worlds
     experiments = _experiments(worlds, settings, drives, common)
     total = len(worlds) * len(settings) if isinstance(worlds, Sized) else None
@@ -183,7 +183,7 @@ def _experiments(
     """Yield what is to be done, map by map; the worlds are drawn one after the other."""
     named = worlds.items() if isinstance(worlds, Mapping) else ((str(k), w) for k, w in enumerate(worlds, start=1))
     for map_name, world in named:
-        _checked(world, World, "each of the worlds")
+        check_type(world, World, "each of the worlds must be World")
         if drives is not None and map_name not in drives:
             raise ValueError(f"drives must hold one for each map, got none for {map_name!r}")
         drive = None if drives is None else as_poses(drives[map_name])
@@ -195,12 +195,10 @@ def _performed(
     experiments: Iterable[Experiment], done: Mapping[str, Row], rows: dict[int, Row], jobs: int | None
 ) -> Iterator[tuple[int, Row, str]]:
     """Yield (number, row, key) of each experiment as it ends; those done before go to ``rows``."""
-    from joblib import Parallel, delayed
-
     keys: dict[int, str] = {}
     failures: list[Exception] = []
 
-    def waiting() -> Iterator[Any]:
+    def waiting() -> Iterator[tuple[Any, ...]]:
         try:
             for number, experiment in enumerate(experiments):
                 key = experiment.key()
@@ -208,18 +206,45 @@ def _performed(
                     rows[number] = done[key]
                 else:
                     keys[number] = key
-                    yield delayed(_as_child)(os.getpid(), _numbered, number, experiment)
+                    yield _numbered, number, experiment
         except Exception as error:  # a world that cannot be drawn: what runs by now is to end, and be written, first
             failures.append(error)
 
     # Only as many experiments as the workers need next are made ahead: all of them are never in memory at once.
-    with _deaf_children(jobs):
-        running = Parallel(n_jobs=jobs, return_as="generator_unordered")(waiting())
-    with _ended_quietly(running) as results:
+    with _running(waiting(), jobs, ordered=False) as results:
         for number, row in results:
             yield number, row, keys.pop(number)
     if failures:
         raise failures[0]
+
+
+def in_parallel(
+    function: Callable[..., T], work: Iterable[tuple[Any, ...]], *, jobs: int | None, progress: bool, unit: str
+) -> list[T]:
+    """Return what a function makes of each of the arguments, in their order; nothing is kept in a journal."""
+    tasks = [(function, *arguments) for arguments in work]
+    done: list[T] = []
+    with _running(tasks, jobs, ordered=True) as results, _bar(len(tasks), progress, unit) as bar:
+        for result in results:
+            done.append(result)
+            bar.update()
+    return done
+
+
+@contextmanager
+def _running(tasks: Iterable[tuple[Any, ...]], jobs: int | None, *, ordered: bool) -> Iterator[Iterable[Any]]:
+    """Call each task's function with its arguments in child processes; the results come as they are done.
+
+    What still runs in the end is cut short; joblib's advice on that is not for who pressed Ctrl-C.
+    """
+    from joblib import Parallel, delayed
+
+    calls = (delayed(_as_child)(os.getpid(), *task) for task in tasks)
+    with _deaf_children(jobs):
+        running = Parallel(n_jobs=jobs, return_as="generator" if ordered else "generator_unordered")(calls)
+    with warnings.catch_warnings(), closing(running) as results:
+        warnings.filterwarnings("ignore", message=".*adjusting the input task iterator", category=UserWarning)
+        yield results
 
 
 @contextmanager
@@ -237,33 +262,6 @@ def _deaf_children(jobs: int | None) -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-@contextmanager
-def _ended_quietly(running: Generator[T, None, None]) -> Iterator[Generator[T, None, None]]:
-    """Close what is running in the end; joblib's advice on work that is cut short is not for who pressed Ctrl-C."""
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message=".*adjusting the input task iterator", category=UserWarning)
-        with closing(running) as results:
-            yield results
-
-
-def in_parallel(
-    function: Callable[..., T], work: Iterable[tuple[Any, ...]], *, jobs: int | None, progress: bool, unit: str
-) -> list[T]:
-    """Return what a function makes of each of the arguments, in their order; nothing is kept in a journal."""
-    from joblib import Parallel, delayed
-
-    work = list(work)
-    with _deaf_children(jobs):
-        tasks = (delayed(_as_child)(os.getpid(), function, *arguments) for arguments in work)
-        running = Parallel(n_jobs=jobs, return_as="generator")(tasks)
-    with _ended_quietly(running) as results, _bar(len(work), progress, unit) as bar:
-        done = []
-        for result in results:
-            done.append(result)
-            bar.update()
-    return done
 
 
 def _numbered(number: int, experiment: Experiment) -> tuple[int, Row]:
@@ -297,15 +295,6 @@ def _bar(total: int | None, progress: bool, unit: str = "row") -> Any:
 
     # disable=None: shown on a terminal only.
     return tqdm(total=total, unit=unit, file=sys.stderr, disable=None if progress else True, dynamic_ncols=True)
-
-
-# --- arguments ----------------------------------------------------------------------------------------------
-
-
-def _checked(value: Any, kind: type, name: str) -> Any:
-    if not isinstance(value, kind):
-        raise ValueError(f"{name} must be {kind.__name__}, got {type(value).__name__}")
-    return value
 
 
 def checked_jobs(jobs: int | None) -> int | None:

@@ -1,10 +1,8 @@
-"""Oracle: how right any method can hope to be, from the same points.
-
-A least-squares fit that is told which point belongs to which side of which shape. Every accuracy is printed as a pair:
-ours and the oracle's. It shares no code with the finding.
+"""Oracle: what the truth tells of a drive: whose each point is, what was seen, and the best fit to the same points.
 
 In:  a ``World``, the ``Scans`` of it, and the sensor that made them.
-Out: the grid's points, the (shape, side) that each was hit on, and from both the fitted shapes.
+Out: the grid's points with the (shape, side) that each was hit on, and from both the fitted shapes; the share of each
+outline that was seen.
 
 >>> from primkit.lidar import scan
 >>> from primkit.robot import teleport_poses
@@ -13,9 +11,9 @@ Out: the grid's points, the (shape, side) that each was hit on, and from both th
 >>> oracle_fit(world, points, owners)[0].centroid.round(3).tolist()
 [0.1, 0.0]
 
-Its limits. It fits each side by itself: a rectangle's right angles are news to it, so that a method which uses them
-can be closer. And it fits what was seen: a shape with a side that has fewer than two points is missing, though a method
-may guess it rightly.
+The fit is by least squares, side by side, and shares no code with the finding. Its limits: it knows of no right
+angles, so that a method which uses them can be closer; and it has no shape where a side has fewer than two points,
+though a method may guess it rightly.
 
 Sources: total least squares by the smallest eigenvector of the scatter, Pearson (1901), "On lines and planes of closest
 fit"; the circle's geometric fit by least squares, as in Chernov (2010), "Circular and Linear Regression".
@@ -23,7 +21,7 @@ fit"; the circle's geometric fit by least squares, as in Chernov (2010), "Circul
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -32,11 +30,12 @@ from ..arguments import Floats, Ints
 from ..grid import Grid
 from ..lidar import Lidar, Scans
 from ..raycast import cast_rays
+from ..seen import is_seen
 from ..shapes import Circle, Polygon, Shape
 from ..world import World
 
 NOBODY = -1  # the owner of a point that comes from nowhere
-SIGMAS = 6.0  # a reading farther than this from the true range, in standard deviations, is no noise
+NOISE_LIMIT = 6.0  # a reading farther than this from the true range, in standard deviations, is no noise
 EXACT = 1e-9  # m: without noise a reading differs by rounding at most
 
 
@@ -79,12 +78,12 @@ def told_points(
     sides belongs to the first.
     """
     lidar = Lidar() if lidar is None else lidar
-    exact = exact_ranges(world, scans, lidar)
+    exact = _exact_ranges(world, scans, lidar)
     seen, true = scans.ranges[scans.hits], exact[scans.hits]
     real = np.isfinite(true)
-    real[real] = np.abs(seen[real] - true[real]) <= SIGMAS * lidar.noise_std + EXACT
+    real[real] = np.abs(seen[real] - true[real]) <= NOISE_LIMIT * lidar.noise_std + EXACT
     owners = np.full((len(seen), 2), NOBODY)
-    hits = Scans(scans.poses, scans.angles, np.where(scans.hits, exact, np.inf), scans.inside).points()
+    hits = replace(scans, ranges=np.where(scans.hits, exact, np.inf)).points()
     owners[np.isfinite(true)] = hit_sides(world, hits)
     owners[~real] = NOBODY
     grid = Grid(resolution)
@@ -92,11 +91,36 @@ def told_points(
     return grid.to_points(cells), owners[first]
 
 
-def exact_ranges(world: World, scans: Scans, lidar: Lidar) -> Floats:
+def _exact_ranges(world: World, scans: Scans, lidar: Lidar) -> Floats:
     """Return what a sensor without faults measures from the same poses, shape (P, B), metres; ``inf``: nothing."""
     exact = cast_rays(world, scans.poses, scans.angles, lidar.range_max)
     exact[exact < lidar.range_min] = np.inf
     return exact
+
+
+def exact_hits(world: World, scans: Scans, lidar: Lidar) -> tuple[Floats, Ints]:
+    """Return the hits, shape (N, 2), that a sensor without faults would have had, and the (shape, side) of each."""
+    hits = replace(scans, ranges=_exact_ranges(world, scans, lidar)).points()
+    return hits, hit_sides(world, hits)
+
+
+def shares_seen(world: World, scans: Scans, lidar: Lidar) -> tuple[float, ...]:
+    """Return for each shape of a world the share of its outline that was seen, by the exact hits on it.
+
+    Examples
+    --------
+    >>> from primkit.lidar import scan
+    >>> world = World([Circle((0.2, 0.0), 0.05), Circle((-0.4, 0.0), 0.05)])
+    >>> [round(share, 1) for share in shares_seen(world, scan(world, [(0, 0, 0)]), Lidar())]
+    [0.4, 0.0]
+    """
+    hits, owners = exact_hits(world, scans, lidar)
+    return tuple(share_seen(shape, hits[owners[:, 0] == number]) for number, shape in enumerate(world.shapes))
+
+
+def share_seen(shape: Shape, hits: Floats) -> float:
+    """Return the share of a shape's outline that is seen in hits, shape (N, 2), by the rule of ``seen``."""
+    return float(is_seen(shape.outline(400), hits).mean())
 
 
 def hit_sides(world: World, hits: Floats) -> Ints:

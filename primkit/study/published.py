@@ -7,11 +7,7 @@ Out: Tables 1 and 2 (automatic movement) and 3 and 4 (manual movement), as far a
 >>> one.score.weighted, one.time, two.score.weighted, two.time
 (1.0, 10.03, 0.83, 10.37)
 
-A mean's 95 % interval is the percentile bootstrap over maps: maps are the independent draws, not the shapes or
-coordinates on them. It is as wide as the maps differ; when all of them score alike it has no width, which a note says.
-
-Sources: the figures are those of "Mapping of Primitives in Mobile Robotics Using Computer Vision", Tables 1 to 4; the
-interval is that of Efron (1979), "Bootstrap methods: another look at the jackknife".
+Source: "Mapping of Primitives in Mobile Robotics Using Computer Vision", Tables 1 to 4.
 """
 
 from __future__ import annotations
@@ -21,15 +17,14 @@ from dataclasses import astuple, dataclass, fields, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..formats import StrPath, write_atomically
 from ..shapes import KINDS
+from ..table import as_csv
+from .estimate import interval
+from .paper_table import Line, PaperTable
 from .row import Movement, Row, Score
-from .table import Line, Table, as_csv
 
-RESAMPLES = 5000  # the ends of an interval then differ by about a hundredth of its width from draw to draw
-BLOCK = 1_000_000  # counts drawn at once: 8 MB, however many maps there are
 AVERAGE = "average"
 
 
@@ -71,7 +66,7 @@ PUBLISHED: Mapping[Movement, Mapping[str, Figures]] = {
 }
 
 
-def tables(rows: Iterable[Row], *, driven: str = "") -> tuple[Table, ...]:
+def tables(rows: Iterable[Row], *, driven: str = "") -> tuple[PaperTable, ...]:
     """Return the paper's tables with our means beside the published figures.
 
     Parameters
@@ -83,7 +78,7 @@ def tables(rows: Iterable[Row], *, driven: str = "") -> tuple[Table, ...]:
 
     Returns
     -------
-    tuple of Table
+    tuple of PaperTable
         Tables 1 and 2 for rows with automatic movement, 3 and 4 for manual: those that the rows have maps for.
 
     Raises
@@ -132,7 +127,7 @@ def rows_as_csv(rows: Iterable[Row]) -> str:
     return as_csv(header + errors, lines)
 
 
-def write_tables(folder: StrPath, made: Iterable[Table], rows: Iterable[Row]) -> list[str]:
+def write_tables(folder: StrPath, made: Iterable[PaperTable], rows: Iterable[Row]) -> list[str]:
     """Write each table and all rows as CSV into a folder, and return the files' names."""
     files = {f"{table.title.split('.')[0].lower().replace(' ', '-')}.csv": table.csv() for table in made}
     files["rows.csv"] = rows_as_csv(rows)
@@ -141,52 +136,10 @@ def write_tables(folder: StrPath, made: Iterable[Table], rows: Iterable[Row]) ->
     return list(files)
 
 
-def interval(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the ends of the 95 % interval of each column's mean: percentile bootstrap over rows.
-
-    Parameters
-    ----------
-    values : array, shape (N, Q)
-        One row for each map.
-
-    Examples
-    --------
-    >>> low, high = interval(np.array([[0.0, 1.0], [1.0, 1.0]] * 8))
-    >>> low.tolist(), high.tolist()
-    ([0.25, 1.0], [0.75, 1.0])
-    """
-    low, high = np.percentile(resampled_means(values), (2.5, 97.5), axis=0)
-    return low, high
-
-
-def resampled_means(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return each column's mean over rows drawn with replacement, as often as the bootstrap asks for.
-
-    The same rows are drawn for all columns of one draw, so that what is computed from several means belongs together.
-
-    Parameters
-    ----------
-    values : array, shape (N, Q)
-        One row for each map.
-
-    Returns
-    -------
-    array, shape (5000, Q)
-    """
-    n = len(values)
-    rng = np.random.default_rng(0)  # fixed: the same rows give the same table
-    step = max(1, BLOCK // n)
-    means = [
-        rng.multinomial(n, np.full(n, 1 / n), size=min(step, RESAMPLES - start)) @ values / n
-        for start in range(0, RESAMPLES, step)
-    ]
-    return np.vstack(means)
-
-
-def _table(title: str, rows: Sequence[Row], groups: Mapping[str, Sequence[Row]]) -> Table:
+def _table(title: str, rows: Sequence[Row], groups: Mapping[str, Sequence[Row]]) -> PaperTable:
     """Return one table: for each group of maps the published figures, then each method under each protocol."""
     lines = [line for maps, chosen in groups.items() if chosen for line in _lines(maps, chosen)]
-    return Table(title, tuple(lines), _notes(title, rows, lines))
+    return PaperTable(title, tuple(lines), _notes(title, rows, lines))
 
 
 def _lines(maps: str, rows: Sequence[Row]) -> list[Line]:

@@ -11,7 +11,7 @@ Out: a ``Row``, which also knows its scores at other tolerances, and which error
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import islice
 from typing import Literal
@@ -21,6 +21,7 @@ from ..evaluation import CENTER_WEIGHT, DIMENSION_WEIGHT, SHAPE_WEIGHT
 from ..shapes import Kind
 
 Movement = Literal["automatic", "manual"]
+Errors = tuple[float, ...]  # found - true, metres
 
 N_DIMENSIONS: dict[Kind, int] = {"circle": 1, "triangle": 3, "rectangle": 2, "pentagon": 5}
 
@@ -111,14 +112,9 @@ class Row:
         """
         if not self.kinds:
             return self.fair
-        right = [
-            sum(abs(e) <= tolerance + ROUNDING for e in errors)
-            for errors in (self.center_errors, self.dimension_errors)
-        ]
-        shape, center = self.fair.shape, right[0] / (2 * self.n_shapes)
-        dimension = right[1] / sum(N_DIMENSIONS[kind] for kind in self.kinds)
-        weighted = SHAPE_WEIGHT * shape + CENTER_WEIGHT * center + DIMENSION_WEIGHT * dimension
-        return Score(weighted, shape, center, dimension)
+        center = _n_right(self.center_errors, tolerance) / (2 * self.n_shapes)
+        dimension = _n_right(self.dimension_errors, tolerance) / sum(N_DIMENSIONS[kind] for kind in self.kinds)
+        return _weighted(self.fair.shape, center, dimension)
 
     def scores_by_shape(self) -> list[Score]:
         """Return the fair scores of each true shape by itself: nothing is right of one that was missed.
@@ -132,29 +128,34 @@ class Row:
         >>> [(score.shape, score.center, score.dimension) for score in row.scores_by_shape()]
         [(1.0, 0.5, 1.0), (0.0, 0.0, 0.0)]
         """
-        scores = []
-        centers, dimensions = iter(self.center_errors), iter(self.dimension_errors)
-        for kind, found in zip(self.kinds, self.found_as, strict=True):
-            shape = float(kind == found)
-            center = self._right(islice(centers, 2 * (found is not None))) / 2
-            dimension = self._right(islice(dimensions, N_DIMENSIONS[kind] * (kind == found))) / N_DIMENSIONS[kind]
-            weighted = SHAPE_WEIGHT * shape + CENTER_WEIGHT * center + DIMENSION_WEIGHT * dimension
-            scores.append(Score(weighted, shape, center, dimension))
-        return scores
+        return [
+            _weighted(
+                float(kind == found),
+                _n_right(center, self.tolerance) / 2,
+                _n_right(dimension, self.tolerance) / N_DIMENSIONS[kind],
+            )
+            for kind, found, center, dimension in self._by_shape()
+        ]
 
-    def _right(self, errors: Iterable[float]) -> int:
-        return sum(abs(error) <= self.tolerance + ROUNDING for error in errors)
-
-    def errors_by_shape(self) -> list[tuple[tuple[float, ...], tuple[float, ...]] | None]:
+    def errors_by_shape(self) -> list[tuple[Errors, Errors] | None]:
         """Return for each true shape its centre's and its dimensions' errors, metres.
 
         None for a shape that was missed, or found as one of another kind.
         """
-        errors: list[tuple[tuple[float, ...], tuple[float, ...]] | None] = []
-        c = d = 0
+        return [(center, dimension) if kind == found else None for kind, found, center, dimension in self._by_shape()]
+
+    def _by_shape(self) -> Iterator[tuple[Kind, Kind | None, Errors, Errors]]:
+        """Yield for each true shape its kind, the kind found, and the errors of its centre and its dimensions."""
+        centers, dimensions = iter(self.center_errors), iter(self.dimension_errors)
         for kind, found in zip(self.kinds, self.found_as, strict=True):
-            here = c, d
-            c, d = c + 2 * (found is not None), d + N_DIMENSIONS[kind] * (found == kind)
-            right = self.center_errors[here[0] : c], self.dimension_errors[here[1] : d]
-            errors.append(right if found == kind else None)
-        return errors
+            center = tuple(islice(centers, 2 * (found is not None)))
+            yield kind, found, center, tuple(islice(dimensions, N_DIMENSIONS[kind] * (kind == found)))
+
+
+def _n_right(errors: Errors, tolerance: float) -> int:
+    return sum(abs(error) <= tolerance + ROUNDING for error in errors)
+
+
+def _weighted(shape: float, center: float, dimension: float) -> Score:
+    weighted = SHAPE_WEIGHT * shape + CENTER_WEIGHT * center + DIMENSION_WEIGHT * dimension
+    return Score(weighted, shape, center, dimension)

@@ -14,16 +14,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import astuple, dataclass
+from itertools import groupby
 from typing import ClassVar
 
 import numpy as np
 
+from ..table import Table, as_csv
 from .estimate import Estimate, ratio_of
 from .row import Row, Score
-from .table import as_block, as_csv, as_html, wrapped
 
-ENOUGH = 0.6  # share of an outline
-HEADER = ("", "total", "shape", "centre", "dimensions")
+ENOUGH_SEEN = 0.6  # share of an outline
+SEEN_HEADER = ("", "total", "shape", "centre", "dimensions")
 
 
 @dataclass(frozen=True)
@@ -83,16 +84,18 @@ class SeenTable:
     title: ClassVar[str] = "Shapes by how much of their outline was seen, manual movement"
     file: ClassVar[str] = "seen.csv"
 
-    def groups(self) -> list[tuple[str, list[tuple[str, ...]]]]:
-        """Return each group's heading with its lines' texts."""
-        headings = dict.fromkeys(line.heading() for line in self.lines)
-        return [(heading, [line.cells() for line in self.lines if line.heading() == heading]) for heading in headings]
+    def table(self) -> Table:
+        """Return the lines as texts, by how much was seen."""
+        rows: list[tuple[str, ...]] = []
+        for heading, lines in groupby(self.lines, key=SeenLine.heading):
+            rows += [(heading,), *(line.cells() for line in lines)]
+        return Table(SEEN_HEADER, rows, self.title, self.notes)
 
     def __str__(self) -> str:
-        return "\n".join([self.title, "", *as_block(HEADER, self.groups()), *wrapped(self.notes)])
+        return str(self.table())
 
     def _repr_html_(self) -> str:
-        return as_html(self.title, HEADER, self.groups(), self.notes)
+        return self.table()._repr_html_()
 
     def csv(self) -> str:
         """Return one line for each shape and method as CSV: shares and scores from 0 to 1."""
@@ -101,7 +104,7 @@ class SeenTable:
         )
 
 
-def seen_table(rows: Iterable[Row], enough: float = ENOUGH) -> SeenTable:
+def seen_table(rows: Iterable[Row], enough: float = ENOUGH_SEEN) -> SeenTable:
     """Return how right the shapes are that a drive saw enough of, and how right the others.
 
     Parameters

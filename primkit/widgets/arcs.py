@@ -23,18 +23,18 @@ from .slider import Choice, Explorer, Picture, Slider, explore
 
 XYR = tuple[float, float, float]
 
-TRUTH = Circle((0.0, 0.0), 0.1)  # metres
-POINTS = 60
-VIEW = 0.42  # m: what is seen around the true circle, with room for the legend above it
+TRUE_CIRCLE = Circle((0.0, 0.0), 0.1)  # metres
+ARC_POINTS = 60
+ARC_VIEW = 0.42  # m: what is seen around the true circle, with room for the legend above it
 # Name, colour, marker of the centre, width and dash of the outline; fits that agree show through each other's gaps.
-WAYS = (
+CIRCLE_FITS = (
     ("mean", ORANGE, "cross", 2.5, "2 4"),
     ("Kasa", VERMILION, "square", 2.5, ""),
     ("Pratt", PURPLE, "triangle", 5.0, ""),
     ("Taubin", BLUE, "diamond", 3.0, ""),
     ("geometric", BLACK, "ring", 1.5, "6 5"),
 )
-ALL = "all"
+ALL_FITS = "all"
 
 
 @cache
@@ -45,7 +45,7 @@ def arcs() -> Explorer:
         Slider("arc", 30, 360, 5, start=90, unit="degrees"),
         Slider("noise", 0.0, 10.0, 0.5, start=5.0, unit="mm"),
         Slider("seed", 0, 20, 1, start=0),
-        Choice("show", (ALL, *(name for name, *_ in WAYS)), start=ALL),
+        Choice("show", (ALL_FITS, *(name for name, *_ in CIRCLE_FITS)), start=ALL_FITS),
         settings={
             "all around": {"arc": 360},
             "a half": {"arc": 180},
@@ -60,19 +60,19 @@ def arcs() -> Explorer:
 def draw_arcs(arc: int, noise: float, seed: int, show: str) -> str:
     """Draw points on an arc of the true circle, and fitted circles: arc in degrees, noise in mm."""
     points = points_on_arc(arc, noise / 1000, seed)
-    fits = {name: fitted(points, name) for name, *_ in WAYS}
+    fits = {name: fitted(points, name) for name, *_ in CIRCLE_FITS}
     said = ", ".join(f"{name} {_millimetres(circle)}" for name, circle in fits.items())
     return _drawn(
         points,
-        {name: circle for name, circle in fits.items() if show in (ALL, name)},
-        TRUTH,
+        {name: circle for name, circle in fits.items() if show in (ALL_FITS, name)},
+        TRUE_CIRCLE,
         title=f"True 100 mm: Kasa {_millimetres(fits['Kasa'])}, Taubin {_millimetres(fits['Taubin'])}",
-        says=f"{arc} degrees, noise {noise:g} mm, true radius {_millimetres(TRUTH)}: {said}.",
+        says=f"{arc} degrees, noise {noise:g} mm, true radius {_millimetres(TRUE_CIRCLE)}: {said}.",
     )
 
 
 def circles_among(points: Floats, circles: Mapping[str, Circle | XYR | None], truth: Circle, title: str) -> Picture:
-    """Return the picture of points, shape (N, 2), the true circle, and fitted ones by the names of ``WAYS``."""
+    """Return the picture of points, shape (N, 2), the true circle, and fitted ones by the names of ``CIRCLE_FITS``."""
     fits = {name: Circle(c[:2], c[2]) if isinstance(c, tuple) else c for name, c in circles.items()}
     said = ", ".join(f"{name} {_millimetres(circle)}" for name, circle in fits.items())
     says = f"{len(points)} points; true radius {_millimetres(truth)}: {said}."
@@ -82,9 +82,9 @@ def circles_among(points: Floats, circles: Mapping[str, Circle | XYR | None], tr
 def _drawn(points: Floats, fits: Mapping[str, Circle | None], truth: Circle, *, title: str, says: str) -> str:
     """Draw the true circle, the fits that are there, the points, and a legend with all radii."""
     x, y = truth.center.tolist()
-    frame = square_frame((x, y + 0.035), VIEW)
+    frame = square_frame((x, y + 0.035), ARC_VIEW)
     outlines, centers, signs = [], [], [(f"true: {_millimetres(truth)}", PALE, "line")]
-    for name, color, marker, width, dash in WAYS:
+    for name, color, marker, width, dash in CIRCLE_FITS:
         if name in fits:
             signs.append((f"{name}: {_millimetres(fits[name])}", color, marker))
         if circle := fits.get(name):
@@ -104,13 +104,13 @@ def _drawn(points: Floats, fits: Mapping[str, Circle | None], truth: Circle, *, 
 
 def points_on_arc(arc: float, noise: float, seed: int) -> Floats:
     """Return points on the right of the true circle, shape (60, 2): arc in degrees, radial noise in metres."""
-    bearing = np.radians(arc) * ((np.arange(POINTS) + 0.5) / POINTS - 0.5)
-    radius = TRUTH.radius + noise * np.random.default_rng(seed).standard_normal(POINTS)
-    return TRUTH.center + radius[:, None] * np.column_stack([np.cos(bearing), np.sin(bearing)])
+    bearing = np.radians(arc) * ((np.arange(ARC_POINTS) + 0.5) / ARC_POINTS - 0.5)
+    radius = TRUE_CIRCLE.radius + noise * np.random.default_rng(seed).standard_normal(ARC_POINTS)
+    return TRUE_CIRCLE.center + radius[:, None] * np.column_stack([np.cos(bearing), np.sin(bearing)])
 
 
 def fitted(points: Floats, name: str) -> Circle | None:
-    """Return the circle that a way of ``WAYS`` sees in the points; None when it sees a line."""
+    """Return the circle that a way of ``CIRCLE_FITS`` sees in the points; None when it sees a line."""
     if name == "mean":
         center = points.mean(axis=0)
         return Circle(center, float(np.hypot(*(points - center).T).mean()))

@@ -19,7 +19,7 @@ from ..world import random_world
 from .drawing import board_frame, picture
 from .slider import Choice, Explorer, Slider, explore
 
-POINTS, BOTH, TRUTH = "the robot's points", "both", "the truth"
+SHOW_POINTS, SHOW_BOTH, SHOW_TRUTH = "the robot's points", "both", "the truth"
 
 
 @cache
@@ -30,11 +30,11 @@ def boards() -> Explorer:
         Slider("seed", 0, 200, 1, start=7),
         Slider("shapes", 1, 4, 1, start=4),
         Slider("noise", 0.0, 20.0, 0.5, start=0.0, unit="mm"),
-        Choice("show", (POINTS, BOTH, TRUTH), start=POINTS),
+        Choice("show", (SHOW_POINTS, SHOW_BOTH, SHOW_TRUTH), start=SHOW_POINTS),
         settings={
-            "this lesson's board": {"show": BOTH},
-            "another board": {"seed": 8, "show": BOTH},
-            "noise of 5 mm": {"noise": 5.0, "show": BOTH},
+            "this lesson's board": {"show": SHOW_BOTH},
+            "another board": {"seed": 8, "show": SHOW_BOTH},
+            "noise of 5 mm": {"noise": 5.0, "show": SHOW_BOTH},
         },
     )
 
@@ -48,11 +48,11 @@ def draw_board(seed: int, shapes: int, noise: float, show: str) -> str:
     kinds = Counter(shape.kind for shape in world.shapes)
     names = " and ".join(count(n, kind) for kind, n in sorted(kinds.items()))
     seen = f"{count(len(points), 'occupied cell')} with noise of {noise:g} mm"
-    says = {POINTS: seen, TRUTH: names, BOTH: f"{names}; {seen}"}
+    says = {SHOW_POINTS: seen, SHOW_TRUTH: names, SHOW_BOTH: f"{names}; {seen}"}
     return picture(
         frame,
-        *(frame.shape(shape, width=1) for shape in world.shapes if show != POINTS),
-        frame.points(points if show != TRUTH else np.empty((0, 2)), INK, size=2),
+        *(frame.shape(shape, width=1) for shape in world.shapes if show != SHOW_POINTS),
+        frame.points(points if show != SHOW_TRUTH else np.empty((0, 2)), INK, size=2),
         title=f"Seed {seed}: {count(len(world.shapes), 'shape')}, {count(len(points), 'occupied cell')}",
         says=f"The board with seed {seed}: {says[show]}.",
     )

@@ -21,14 +21,14 @@ from ..world import World
 from .drawing import Frame, path, picture, square_frame
 from .slider import Choice, Explorer, Picture, Slider, explore
 
-TRUTH = Circle((0.0036, -0.0047), 0.06)  # not in the middle of a cell, nor on a border
-ROUND = 0.13  # m: the robot drives round the circle at this distance from its centre
-STOPS = 40
-WINDOW = 0.38  # m: the piece of the board that is seen
-LINED = 4  # mm: smaller cells are dots, without borders
-LOST = 0.5  # m: a circle larger than this is none that a student could look for
-BORDERS = (-0.06, -0.04, -0.02, 0.0, 0.02, 0.04, 0.06, 0.08)  # m: of the diagram's cells
-CENTER, CORNER = "its centre", "its corner"
+DRIVEN_CIRCLE = Circle((0.0036, -0.0047), 0.06)  # not in the middle of a cell, nor on a border
+DRIVING_RADIUS = 0.13  # m: the robot drives round the circle at this distance from its centre
+MOST_STOPS = 40
+CELLS_VIEW = 0.38  # m: the piece of the board that is seen
+LEAST_LINED_CELL = 4  # mm: smaller cells are dots, without borders
+LOST_RADIUS = 0.5  # m: a circle larger than this is none that a student could look for
+CELL_BORDERS = (-0.06, -0.04, -0.02, 0.0, 0.02, 0.04, 0.06, 0.08)  # m: of the diagram's cells
+READ_AT_CENTER, READ_AT_CORNER = "its centre", "its corner"
 
 
 @cache
@@ -37,15 +37,15 @@ def cells() -> Explorer:
     return explore(
         draw_cells,
         Slider("cell", 1, 40, 1, start=10, unit="mm", label="cell size"),
-        Slider("poses", 1, STOPS, 1, start=STOPS),
+        Slider("poses", 1, MOST_STOPS, 1, start=MOST_STOPS),
         Slider("error", 0.0, 10.0, 0.5, start=0.0, unit="mm", label="pose error"),
-        Choice("read", (CENTER, CORNER), start=CENTER, label="read at"),
+        Choice("read", (READ_AT_CENTER, READ_AT_CORNER), start=READ_AT_CENTER, label="read at"),
         settings={
             "fine cells": {"cell": 1},
             "coarse cells": {"cell": 20},
             "three poses": {"poses": 3},
-            "half way round": {"poses": STOPS // 2},
-            "read at the corner": {"cell": 20, "read": CORNER},
+            "half way round": {"poses": MOST_STOPS // 2},
+            "read at the corner": {"cell": 20, "read": READ_AT_CORNER},
             "poses 5 mm off": {"cell": 1, "error": 5.0},
         },
     )
@@ -54,29 +54,29 @@ def cells() -> Explorer:
 @cache
 def drive() -> tuple[Scans, Floats]:
     """Return the scans from all round the circle, and how far off each pose is believed to be, in units of 1."""
-    turn = 2 * np.pi * np.arange(STOPS) / STOPS
-    stops = TRUTH.center + ROUND * np.column_stack([np.cos(turn), np.sin(turn)])
+    turn = 2 * np.pi * np.arange(MOST_STOPS) / MOST_STOPS
+    stops = DRIVEN_CIRCLE.center + DRIVING_RADIUS * np.column_stack([np.cos(turn), np.sin(turn)])
     poses = np.column_stack([stops, turn + np.pi / 2])  # heading where it drives
-    off = np.random.default_rng(2).normal(size=(STOPS, 2))
-    return scan(World([TRUTH]), poses, Lidar()), off
+    off = np.random.default_rng(2).normal(size=(MOST_STOPS, 2))
+    return scan(World([DRIVEN_CIRCLE]), poses, Lidar()), off
 
 
 def draw_cells(cell: int, poses: int, error: float, read: str) -> str:
     """Draw the cells that a circle's hits fall into, and the circle through them; cell and pose error in mm."""
     scans, off = drive()
-    believed = scans.poses + error / 1000 * np.column_stack([off, np.zeros(STOPS)])
+    believed = scans.poses + error / 1000 * np.column_stack([off, np.zeros(MOST_STOPS)])
     seen = Scans(believed, scans.angles, scans.ranges, scans.inside)[:poses]
     grid, side = Grid(cell / 1000), cell / 1000
     grid.add(seen)
-    points = grid.points() if read == CENTER else grid.cells * side
+    points = grid.points() if read == READ_AT_CENTER else grid.cells * side
     found = fit_circle(points)
-    if found is not None and found.radius > LOST:
+    if found is not None and found.radius > LOST_RADIUS:
         found = None
-    frame, fine = square_frame((0.0, 0.0), WINDOW), cell < LINED
+    frame, fine = square_frame((0.0, 0.0), CELLS_VIEW), cell < LEAST_LINED_CELL
     return picture(
         frame,
         "" if fine else _squares(frame, grid.cells, side) + _borders(frame, side),
-        frame.circle(TRUTH.center, TRUTH.radius, BLUE, 1.2 if fine else 2.5),
+        frame.circle(DRIVEN_CIRCLE.center, DRIVEN_CIRCLE.radius, BLUE, 1.2 if fine else 2.5),
         "" if found is None else frame.circle(found.center, found.radius, VERMILION, 2, "6 4"),
         frame.points(points, INK, "square", 2.2 + cell / 3) if fine else frame.points(points, INK, size=4),
         *(frame.robot(pose, GREY, 5) for pose in seen.poses),
@@ -105,13 +105,13 @@ def _says(hits: int, occupied: int, cell: int, poses: int, error: float, found: 
     start = f"{hits} hits from {robot} fall into {count(occupied, 'cell')} of {cell} mm"
     if found is None:
         return f"{start}: too few for a circle."
-    radius = 1000 * (found.radius - TRUTH.radius)
+    radius = 1000 * (found.radius - DRIVEN_CIRCLE.radius)
     return f"{start}; the circle through them is {_off(found):.2g} mm off, its radius {radius:+.2g} mm."
 
 
 def _off(found: Circle) -> float:
     """Return how far the centre is from the true one, in mm."""
-    return float(1000 * np.hypot(*(found.center - TRUTH.center)))
+    return float(1000 * np.hypot(*(found.center - DRIVEN_CIRCLE.center)))
 
 
 def _squares(frame: Frame, cells: ArrayLike, side: float) -> str:
@@ -142,7 +142,7 @@ def _numbers(ends: tuple[float, float], side: float) -> range:
 def diagram() -> Picture:
     """Return the drawing behind the lesson's formulas: from a range to a hit, to its cell, to the cell's centre."""
     side, pose, beam, reach = 0.02, np.array([-0.03, -0.017, np.radians(14)]), np.radians(17), 0.078
-    frame = Frame((-0.06, 0.08), (-0.04, 0.06), width=565, height=425, x_ticks=BORDERS, y_ticks=BORDERS[1:7])
+    frame = Frame((-0.06, 0.08), (-0.04, 0.06), width=565, height=425, x_ticks=CELL_BORDERS, y_ticks=CELL_BORDERS[1:7])
     ahead, along = (np.array([np.cos(a), np.sin(a)]) for a in (pose[2], pose[2] + beam))
     hit = pose[:2] + reach * along
     cell = Grid(side).to_cells([hit])

@@ -27,11 +27,11 @@ from numpy.typing import ArrayLike
 from ..plots.look import BLUE, GREY, INK, KIND_COLORS, PALE
 from ..shapes import Circle, Shape
 
-LEFT, RIGHT, TOP, BOTTOM = 60, 15, 30, 45  # px around the axes: numbers, names, title
-LETTERS = 12  # px: the size of all letters but the title's
-FONT = "font-family='DejaVu Sans, Verdana, sans-serif'"
-WIDEST = 860  # px: what fits beside a notebook's margin on most screens; a wider picture is shown smaller
-TIE = 1e-6  # px: lifts 0.25 and its like over the edge, where rounding could go either way
+PAD_LEFT, PAD_RIGHT, PAD_TOP, PAD_BOTTOM = 60, 15, 30, 45  # px around the axes: numbers, names, title
+LETTER_SIZE = 12  # px: the size of all letters but the title's
+SVG_FONT = "font-family='DejaVu Sans, Verdana, sans-serif'"
+WIDEST_PICTURE = 860  # px: what fits beside a notebook's margin on most screens; a wider picture is shown smaller
+PIXEL_TIE = 1e-6  # px: lifts 0.25 and its like over the edge, where rounding could go either way
 
 # Outlines of the markers around (0, 0), for a radius of 1; "dot" and "ring" are drawn as circles.
 MARKERS: dict[str, tuple[tuple[float, float], ...]] = {
@@ -70,14 +70,14 @@ class Frame:
     @property
     def scale(self) -> tuple[float, float]:
         """Pixels for one unit of x and of y."""
-        across, up = self.width - LEFT - RIGHT, self.height - TOP - BOTTOM
+        across, up = self.width - PAD_LEFT - PAD_RIGHT, self.height - PAD_TOP - PAD_BOTTOM
         return across / (self.x[1] - self.x[0]), up / (self.y[1] - self.y[0])
 
     def at(self, points: ArrayLike) -> list[list[float]]:
         """Return the pixels of points, N pairs, rounded to a tenth."""
         low, scale = np.array([self.x[0], self.y[1]]), np.array([1.0, -1.0]) * self.scale
-        pixels = (np.asarray(points, dtype=float).reshape(-1, 2) - low) * scale + (LEFT, TOP)
-        rounded: list[list[float]] = (np.round(pixels + TIE, 1) + 0.0).tolist()
+        pixels = (np.asarray(points, dtype=float).reshape(-1, 2) - low) * scale + (PAD_LEFT, PAD_TOP)
+        rounded: list[list[float]] = (np.round(pixels + PIXEL_TIE, 1) + 0.0).tolist()
         return rounded
 
     def points(self, points: ArrayLike, color: str = BLUE, marker: str = "dot", size: float = 5) -> str:
@@ -151,7 +151,7 @@ class Frame:
         color: str = INK,
         anchor: str = "start",
         shift: tuple[float, float] = (0, 0),
-        size: float = LETTERS,
+        size: float = LETTER_SIZE,
     ) -> str:
         """Write words at a place, moved by ``shift`` pixels (right, down), on a white rim to be read on lines."""
         ((x, y),) = self.at(where)
@@ -163,10 +163,10 @@ class Frame:
         >>> "hits" in board_frame().legend([("hits", BLUE, "dot")])
         True
         """
-        wide = 0.62 * LETTERS * max(len(words) for words, _, _ in entries) + 34
+        wide = 0.62 * LETTER_SIZE * max(len(words) for words, _, _ in entries) + 34
         tall = 17 * len(entries) + 6
-        left = LEFT + 5 if "left" in corner else self.width - RIGHT - 5 - wide
-        top = TOP + 5 if "top" in corner else self.height - BOTTOM - 5 - tall
+        left = PAD_LEFT + 5 if "left" in corner else self.width - PAD_RIGHT - 5 - wide
+        top = PAD_TOP + 5 if "top" in corner else self.height - PAD_BOTTOM - 5 - tall
         box = (
             f'<rect x="{_n(left)}" y="{_n(top)}" width="{_n(wide)}" height="{tall}" fill="white" fill-opacity="0.85"/>'
         )
@@ -206,7 +206,7 @@ def board_frame(size: float = 1.0, *, width: int = 425) -> Frame:
 def square_frame(center: tuple[float, float], size: float, *, width: int = 425) -> Frame:
     """Return the frame of a square piece of the board around ``center``, ``size`` metres wide: a magnifying glass."""
     (x, y), half = center, size / 2
-    height = width - LEFT - RIGHT + TOP + BOTTOM
+    height = width - PAD_LEFT - PAD_RIGHT + PAD_TOP + PAD_BOTTOM
     return Frame((x - half, x + half), (y - half, y + half), width=width, height=height)
 
 
@@ -231,7 +231,7 @@ def side_by_side(pictures: Sequence[str], captions: Sequence[str], *, columns: i
     cells = []
     for number, (svg, caption) in enumerate(zip(pictures, captions, strict=True)):
         x, y = number % columns * width, number // columns * (height + 26)
-        cells.append(words_at(x + LEFT, y + 20, f"{'abcdefghijkl'[number]}) {caption}", size=15, bold=True))
+        cells.append(words_at(x + PAD_LEFT, y + 20, f"{'abcdefghijkl'[number]}) {caption}", size=15, bold=True))
         cells.append(svg.replace("<svg ", f'<svg x="{x}" y="{y + 26}" ', 1))
     says = says or " ".join(f"{caption}: {what_it_says(svg)}" for svg, caption in zip(pictures, captions, strict=True))
     return _svg(columns * width, rows * (height + 26), "; ".join(captions), says, "".join(cells))
@@ -278,7 +278,7 @@ def words_at(
     *,
     color: str = "#444444",
     anchor: str = "start",
-    size: float = LETTERS,
+    size: float = LETTER_SIZE,
     bold: bool = False,
     rim: bool = False,
     turned: bool = False,
@@ -308,11 +308,11 @@ def round_ticks(low: float, high: float, most: int = 6) -> tuple[float, ...]:
 
 def _svg(width: int, height: int, title: str, says: str, body: str) -> str:
     """Return an SVG with a white ground that shrinks to narrow columns, and what is said to who cannot see it."""
-    shown = min(1.0, WIDEST / width)
+    shown = min(1.0, WIDEST_PICTURE / width)
     size = f'width="{_n(shown * width)}" height="{_n(shown * height)}" viewBox="0 0 {width} {height}"'
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" {size} '
-        f'role="img" style="max-width:100%;height:auto" {FONT}>'
+        f'role="img" style="max-width:100%;height:auto" {SVG_FONT}>'
         f"<title>{escape(title)}</title><desc>{escape(says)}</desc>"
         f'<rect width="{width}" height="{height}" fill="white"/>{body}</svg>'
     )
@@ -325,7 +325,12 @@ def _sign(x: float, y: float, color: str, sign: str) -> str:
             f"M{_n(x)} {_n(y)}h18", stroke=color, stroke_width=2, stroke_dasharray="5 3" if sign == "dashed" else ""
         )
     # A frame of its own in which one unit is one pixel, and (0, 0) the middle of the sign.
-    here = Frame((LEFT - x - 9, LEFT - x - 8), (y - TOP - 1, y - TOP), width=LEFT + RIGHT + 1, height=TOP + BOTTOM + 1)
+    here = Frame(
+        (PAD_LEFT - x - 9, PAD_LEFT - x - 8),
+        (y - PAD_TOP - 1, y - PAD_TOP),
+        width=PAD_LEFT + PAD_RIGHT + 1,
+        height=PAD_TOP + PAD_BOTTOM + 1,
+    )
     return here.points([(0, 0)], color, sign, 8)
 
 
@@ -336,7 +341,7 @@ def _through(pixels: Iterable[Iterable[float]]) -> str:
 
 def _n(value: float) -> str:
     """Return a pixel as text, with a tenth at most."""
-    return f"{round(value + TIE, 1) + 0.0:g}"
+    return f"{round(value + PIXEL_TIE, 1) + 0.0:g}"
 
 
 def _number(value: float) -> str:

@@ -31,8 +31,8 @@ __all__ = ["edges", "draw_edges", "diagram", "show_lines", "what_it_says"]
 
 RECTANGLE = Polygon([(-0.13, -0.09), (0.13, -0.09), (0.13, 0.09), (-0.13, 0.09)]).moved((0.02, 0.01), 0.3)
 MOST_TRIALS = 60
-SIGNS = ("dot", "cross", "diamond", "triangle", "square", "triangle down", "ring")  # of the lines' points, in turn
-FAR = 1.0  # m: half the length of a line that is drawn across the whole picture
+LINE_SIGNS = ("dot", "cross", "diamond", "triangle", "square", "triangle down", "ring")  # of the lines' points, in turn
+LINE_REACH = 1.0  # m: half the length of a line that is drawn across the whole picture
 
 
 @cache
@@ -116,7 +116,7 @@ def show_lines(
     parts = [frame.points(points, GREY, size=3 if small else 6)]
     for k, (line, which) in enumerate(found):
         color, own = CLUSTER_COLORS[k % len(CLUSTER_COLORS)], points[np.asarray(which)]
-        parts.append(frame.points(own, color, SIGNS[k % len(SIGNS)], 4.5 if small else 8))
+        parts.append(frame.points(own, color, LINE_SIGNS[k % len(LINE_SIGNS)], 4.5 if small else 8))
         parts.append(_along(frame, line, own, color))
     outline = "" if truth is None else frame.shape(truth, INK, 1.2, "6 4", fill=0)
     return Picture(picture(frame, *parts, outline, title=title, says=says), title)
@@ -167,7 +167,7 @@ def _around(polygon: Polygon) -> Frame:
 
 def _across(frame: Frame, line: Line, color: str, width: float, dash: str = "") -> str:
     """Draw a line from edge to edge."""
-    foot, along = line.offset * line.normal, FAR * line.direction
+    foot, along = line.offset * line.normal, LINE_REACH * line.direction
     return frame.segments([foot - along], [foot + along], color, width, dash)
 
 
@@ -182,7 +182,7 @@ def _along(frame: Frame, line: Line, own: Floats, color: str) -> str:
 
 def _band(frame: Frame, line: Line, reach: float, color: str) -> str:
     """Draw what is within ``reach`` metres of a line."""
-    along, aside = FAR * line.direction, reach * line.normal
+    along, aside = LINE_REACH * line.direction, reach * line.normal
     foot = line.offset * line.normal
     corners: Sequence[Floats] = (foot - along - aside, foot + along - aside, foot + along + aside, foot - along + aside)
     return frame.area(np.array(corners), color, 0.25)

@@ -20,20 +20,22 @@ from ..world import World, random_world
 from .drawing import Frame, board_frame, picture, side_by_side
 from .slider import Choice, Explorer, Picture, Slider, explore
 
-FOUR, LONG, NEAR = "four shapes", "long and small", "3 cm apart"
-RANDOM, SPREAD = "random points", "k-means++"
+FOUR_SHAPES, LONG_AND_SMALL, CLOSE_PAIR = "four shapes", "long and small", "3 cm apart"
+RANDOM_START, SPREAD_START = "random points", "k-means++"
 
 BOARDS = {
-    FOUR: random_world(4, style="free", rng=7),
-    LONG: World([Polygon([(-0.35, -0.025), (0.15, -0.025), (0.15, 0.025), (-0.35, 0.025)]), Circle((0.24, 0), 0.04)]),
-    NEAR: World([Polygon([(-0.2, -0.12), (0.1, -0.12), (0.1, 0.12), (-0.2, 0.12)]), Circle((0.17, 0), 0.04)]),
+    FOUR_SHAPES: random_world(4, style="free", rng=7),
+    LONG_AND_SMALL: World(
+        [Polygon([(-0.35, -0.025), (0.15, -0.025), (0.15, 0.025), (-0.35, 0.025)]), Circle((0.24, 0), 0.04)]
+    ),
+    CLOSE_PAIR: World([Polygon([(-0.2, -0.12), (0.1, -0.12), (0.1, 0.12), (-0.2, 0.12)]), Circle((0.17, 0), 0.04)]),
 }
-ROUNDS = 20  # of an assignment and an update each: most starts settle in half as many
+KMEANS_ROUNDS = 20  # of an assignment and an update each: most starts settle in half as many
 # Groups are neither black nor square, as the centres are. Six colours with five signs: no pair twice in 30 groups.
-COLORS = tuple(color for color in CLUSTER_COLORS if color != BLACK)
-SIGNS = ("dot", "cross", "diamond", "triangle", "triangle down")
-LARGE = 8  # signs on each group are larger, so that it can be told from the others without colour
-LEGEND = (
+GROUP_COLORS = tuple(color for color in CLUSTER_COLORS if color != BLACK)
+GROUP_SIGNS = ("dot", "cross", "diamond", "triangle", "triangle down")
+SIGNS_PER_GROUP = 8  # signs on each group are larger, so that it can be told from the others without colour
+GROUP_LEGEND = (
     ("start", INK, "ring"),
     ("centre now", INK, "square"),
     ("its way", INK, "line"),
@@ -46,18 +48,18 @@ def groups() -> Explorer:
     """Return the slider of lesson 03: K-Means on three boards, after each of its steps."""
     return explore(
         draw_groups,
-        Choice("board", tuple(BOARDS), start=FOUR),
-        Choice("start", (RANDOM, SPREAD), start=RANDOM, label="centres start at"),
+        Choice("board", tuple(BOARDS), start=FOUR_SHAPES),
+        Choice("start", (RANDOM_START, SPREAD_START), start=RANDOM_START, label="centres start at"),
         Slider("k", 1, 8, 1, start=4),
         Slider("seed", 0, 50, 1, start=1),
-        Slider("step", 0, 2 * ROUNDS, 1, start=1),
+        Slider("step", 0, 2 * KMEANS_ROUNDS, 1, start=1),
         settings={
             "first assignment": {},
             "first update": {"step": 2},
-            "settled": {"step": 2 * ROUNDS},
-            "a bad seed": {"seed": 2, "step": 2 * ROUNDS},
-            "same seed, k-means++": {"seed": 2, "start": SPREAD, "step": 2 * ROUNDS},
-            "long and small": {"board": LONG, "k": 2, "step": 2 * ROUNDS},
+            "settled": {"step": 2 * KMEANS_ROUNDS},
+            "a bad seed": {"seed": 2, "step": 2 * KMEANS_ROUNDS},
+            "same seed, k-means++": {"seed": 2, "start": SPREAD_START, "step": 2 * KMEANS_ROUNDS},
+            "long and small": {"board": LONG_AND_SMALL, "k": 2, "step": 2 * KMEANS_ROUNDS},
         },
     )
 
@@ -65,7 +67,9 @@ def groups() -> Explorer:
 def draw_groups(board: str, start: str, k: int, seed: int, step: int) -> str:
     """Draw K-Means after so many steps: 0 is the start, odd steps assign, even ones move the centres."""
     points = points_of(board)
-    way = walk(points, (random_points if start == RANDOM else spread_points)(points, k, np.random.default_rng(seed)))
+    way = walk(
+        points, (random_points if start == RANDOM_START else spread_points)(points, k, np.random.default_rng(seed))
+    )
     used = way[max(0, step - 1) // 2]  # the centres that the labels were made with
     centers, labels = way[step // 2], nearest(points, used)
     frame = board_frame()
@@ -80,7 +84,7 @@ def draw_groups(board: str, start: str, k: int, seed: int, step: int) -> str:
         *(frame.polyline(way[: step // 2 + 1, j], INK, 1.5) for j in range(k) if step > 1),
         frame.points(way[0], "white", size=11) + frame.points(way[0], INK, "ring", 9),
         frame.points(centers, "white", "square", 14) + frame.points(centers, INK, "square", 10),
-        frame.legend(LEGEND),
+        frame.legend(GROUP_LEGEND),
         title=title,
         says=says,
     )
@@ -113,9 +117,11 @@ def _group(frame: Frame, points: Floats, j: int) -> str:
     """Draw a group's points as dots of its colour, and a few larger signs spread over them."""
     if len(points) == 0:
         return ""
-    color, sign = COLORS[j % len(COLORS)], SIGNS[j % len(SIGNS)]
+    color, sign = GROUP_COLORS[j % len(GROUP_COLORS)], GROUP_SIGNS[j % len(GROUP_SIGNS)]
     around = points[np.argsort(np.arctan2(*(points - points.mean(axis=0)).T))]
-    return frame.points(points, color, size=3.5) + frame.points(around[:: -(-len(points) // LARGE)], color, sign, 9)
+    return frame.points(points, color, size=3.5) + frame.points(
+        around[:: -(-len(points) // SIGNS_PER_GROUP)], color, sign, 9
+    )
 
 
 def _borders(frame: Frame, centers: Floats) -> str:
@@ -176,11 +182,11 @@ def means(points: Floats, labels: Labels, centers: Floats) -> Floats:
 
 
 def walk(points: Floats, centers: Floats) -> Floats:
-    """Return the centres at the start and after each round, shape (ROUNDS + 1, k, 2), metres."""
+    """Return the centres at the start and after each round, shape (KMEANS_ROUNDS + 1, k, 2), metres."""
     way = [centers]
-    while len(way) <= ROUNDS and not (len(way) > 1 and np.array_equal(way[-1], way[-2])):
+    while len(way) <= KMEANS_ROUNDS and not (len(way) > 1 and np.array_equal(way[-1], way[-2])):
         way.append(means(points, nearest(points, way[-1]), way[-1]))
-    return np.array(way + way[-1:] * (ROUNDS + 1 - len(way)))  # settled: no round moves them any more
+    return np.array(way + way[-1:] * (KMEANS_ROUNDS + 1 - len(way)))  # settled: no round moves them any more
 
 
 def random_points(points: Floats, k: int, rng: np.random.Generator) -> Floats:

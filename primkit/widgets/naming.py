@@ -29,32 +29,32 @@ from ..world import PENTAGON, World
 from .drawing import Frame, picture
 from .slider import Choice, Explorer, Picture, Slider, explore
 
-FAIR, FREE = "ln N a number", "nothing"
-SURE = 10.0  # a margin above this is very strong (Kass and Raftery, 1995)
+FAIR_PRICE, NO_PRICE = "ln N a number", "nothing"
+VERY_STRONG = 10.0  # a margin above this is very strong (Kass and Raftery, 1995)
 
-TRUTH: dict[str, Shape] = {
+TRUE_SHAPES: dict[str, Shape] = {
     "circle": Circle((0, 0), 0.065),
     "small circle": Circle((0, 0), 0.03),
     "triangle": Polygon([(-0.07, -0.055), (0.08, -0.03), (-0.02, 0.075)]),
     "rectangle": Polygon([(-0.075, -0.04), (0.075, -0.04), (0.075, 0.04), (-0.075, 0.04)]).moved(angle=np.radians(20)),
     "pentagon": Polygon(0.07 * PENTAGON).moved(angle=0.3),
 }
-PLACES, FIRST = 12, -2.2  # the robot's places on an ellipse around the shape, the first [rad] at the lower left
-AROUND = (0.175, 0.115)  # m: the ellipse's half axes
+MOST_VIEWS, VIEW_AXES = 12, (0.175, 0.115)  # the robot's places on an ellipse around the shape; its half axes, m
+FIRST_BEARING = -2.2  # rad: of the first place, at the lower left
 
-FARTHEST = 0.1  # m: every point of the group counts for every candidate
-MOST_RADIUS = 0.25  # m: a larger circle is a wall
-TURNS = 6  # first guesses of an outline, each turned a little further
-CUTS = (0.002, 0.008)  # m: how much of a corner a first guess cuts off
+REFIT_REACH = 0.1  # m: every point of the group counts for every candidate
+WALL_RADIUS = 0.25  # m: a larger circle is a wall
+TURNED_STARTS = 6  # first guesses of an outline, each turned a little further
+CORNER_CUTS = (0.002, 0.008)  # m: how much of a corner a first guess cuts off
 # A closed outline bends at each corner by this at least and at most [rad], and has no shorter side than this [m].
-LEAST_TURN, MOST_TURN, LEAST_SIDE = np.radians(2), np.radians(175), 0.003
+CLOSED_LEAST_TURN, CLOSED_MOST_TURN, CLOSED_LEAST_SIDE = np.radians(2), np.radians(175), 0.003
 
-STEPS = 21  # an outline is drawn in so many steps a side; every other one where it was not seen
-HARDLY = 0.4  # a side of which less than this share has points near it was hardly seen
+ENDS_PER_SIDE = 21  # an outline is drawn in so many steps a side; every other one where it was not seen
+HARDLY_SEEN = 0.4  # a side of which less than this share has points near it was hardly seen
 
 BARS = Frame((-0.2, 0.2), (-0.26, 0.14), width=425, height=425, y_ticks=(-0.1, 0.0, 0.1))
-TOP_BAR, ROW, BAR = -0.178, 0.021, (-0.105, 0.115)  # m in that frame: the first bar, one row, from left to right
-LONGEST = 2.5  # times the least cost: longer bars are cut off
+FIRST_BAR, BAR_ROW, BAR_ENDS = -0.178, 0.021, (-0.105, 0.115)  # m in BARS: the first bar, a row, left and right
+LONGEST_BAR = 2.5  # times the least cost: longer bars are cut off
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,15 +77,15 @@ def naming() -> Explorer:
     """Return the slider of lesson 06: a shape, noise, view points, and what a fitted number costs."""
     return explore(
         draw_naming,
-        Choice("shape", tuple(TRUTH), start="rectangle"),
+        Choice("shape", tuple(TRUE_SHAPES), start="rectangle"),
         Slider("noise", 0.0, 15.0, 0.5, start=2.0, unit="mm"),
-        Slider("views", 2, PLACES, 1, start=PLACES, label="view points"),
-        Choice("price", (FAIR, FREE), start=FAIR),
+        Slider("views", 2, MOST_VIEWS, 1, start=MOST_VIEWS, label="view points"),
+        Choice("price", (FAIR_PRICE, NO_PRICE), start=FAIR_PRICE),
         settings={
             "seen all around": {},
             "one side hidden": {"views": 6},
             "a circle in 12 mm of noise": {"shape": "circle", "noise": 12.0, "views": 8},
-            "the same, numbers for nothing": {"shape": "circle", "noise": 12.0, "views": 8, "price": FREE},
+            "the same, numbers for nothing": {"shape": "circle", "noise": 12.0, "views": 8, "price": NO_PRICE},
             "a small circle in noise": {"shape": "small circle", "noise": 6.0},
             "a pentagon half seen": {"shape": "pentagon", "noise": 6.0, "views": 5},
         },
@@ -94,13 +94,13 @@ def naming() -> Explorer:
 
 def draw_naming(shape: str, noise: float, views: int, price: str) -> str:
     """Draw the points of one shape, the chosen outline, and each candidate's cost; noise in mm, seed 0."""
-    truth, spread, poses = TRUTH[shape], spread_across(noise / 1000), view_points(views)
+    truth, spread, poses = TRUE_SHAPES[shape], spread_across(noise / 1000), view_points(views)
     grid = Grid(resolution=0.001)
     grid.add(scan(World([truth]), poses, Lidar(noise_std=noise / 1000), rng=0))
     points = grid.points()
     found = fitted(points)
     misfits = np.array([one.misfit(points, spread) for one in found])
-    prices = np.array([one.numbers for one in found]) * (np.log(len(points)) if price == FAIR else 0.0)
+    prices = np.array([one.numbers for one in found]) * (np.log(len(points)) if price == FAIR_PRICE else 0.0)
     costs = misfits + prices
     best, second = np.argsort(costs, kind="stable")[:2].tolist()
     margin = float(costs[second] - costs[best])
@@ -121,8 +121,8 @@ def draw_naming(shape: str, noise: float, views: int, price: str) -> str:
 
 def view_points(views: int) -> Floats:
     """Return the poses of the robot, one after the other around the shape, shape (views, 3)."""
-    bearing = FIRST + 2 * np.pi / PLACES * np.arange(views)
-    x, y = AROUND[0] * np.cos(bearing), AROUND[1] * np.sin(bearing)
+    bearing = FIRST_BEARING + 2 * np.pi / MOST_VIEWS * np.arange(views)
+    x, y = VIEW_AXES[0] * np.cos(bearing), VIEW_AXES[1] * np.sin(bearing)
     return np.column_stack([x, y, np.arctan2(-y, -x)])
 
 
@@ -131,7 +131,7 @@ def fitted(points: Floats) -> tuple[Fitted, ...]:
     middle = points.mean(axis=0)
     local = points - middle
     circle = fit_circle(local)
-    if circle is not None and circle.radius > MOST_RADIUS:
+    if circle is not None and circle.radius > WALL_RADIUS:
         circle = None
     three, square = _closest(local, _even(local, 3)), _closest(local, _even(local, 4), square=True)
     five = _closest(local, joined(_even(local, 5), *_cut(three, 2), *_cut(square, 1)))
@@ -149,8 +149,8 @@ def fitted(points: Floats) -> tuple[Fitted, ...]:
 
 def _even(points: Floats, k: int) -> Outlines:
     """Return first guesses of k sides at even angles, each as far out as the points reach, in several turns."""
-    angles = 2 * np.pi / k * (np.arange(k) + np.arange(TURNS)[:, None] / TURNS)
-    heights = points @ np.stack([np.cos(angles), np.sin(angles)], axis=1)  # (TURNS, N, k)
+    angles = 2 * np.pi / k * (np.arange(k) + np.arange(TURNED_STARTS)[:, None] / TURNED_STARTS)
+    heights = points @ np.stack([np.cos(angles), np.sin(angles)], axis=1)  # (TURNED_STARTS, N, k)
     return from_angle_order(angles, heights.max(axis=1))
 
 
@@ -163,7 +163,7 @@ def _cut(outline: Outlines | None, corners: int) -> list[Outlines]:
     new = before + np.mod(angles - before, 2 * np.pi) / 2
     reach = places[:, 0] * np.cos(new) + places[:, 1] * np.sin(new)
     ways = [list(way) for way in combinations(range(len(angles)), corners)]
-    sides = [(np.append(angles, new[w]), np.append(offsets, reach[w] - cut)) for cut in CUTS for w in ways]
+    sides = [(np.append(angles, new[w]), np.append(offsets, reach[w] - cut)) for cut in CORNER_CUTS for w in ways]
     return [from_angle_order(np.array([a for a, _ in sides]), np.array([d for _, d in sides]))]
 
 
@@ -172,10 +172,10 @@ def _closest(points: Floats, guess: Outlines, *, square: bool = False) -> Outlin
 
     The guesses stand for election as well: a corner that is cut off by a hair may close where its refit does not.
     """
-    found = joined(refine_hard(points, guess, FARTHEST, square=square), guess)
+    found = joined(refine_hard(points, guess, REFIT_REACH, square=square), guess)
     turn = np.mod(np.roll(found.angles, -1, axis=1) - found.angles, 2 * np.pi)
     begin, end = found.spans()
-    closed = ((turn >= LEAST_TURN) & (turn <= MOST_TURN) & (end - begin >= LEAST_SIDE)).all(axis=1)
+    closed = ((turn >= CLOSED_LEAST_TURN) & (turn <= CLOSED_MOST_TURN) & (end - begin >= CLOSED_LEAST_SIDE)).all(axis=1)
     closed &= np.abs(turn.sum(axis=1) - 2 * np.pi) < 1e-6
     if not closed.any():
         return None
@@ -189,14 +189,14 @@ def _outline(shape: Shape, points: Floats) -> list[str]:
     """Draw the chosen outline, dashed where no point lies near; a side that was hardly seen has a question mark."""
     color, marks = KIND_COLORS[shape.kind], []
     if isinstance(shape, Circle):
-        ring = shape.outline(4 * STEPS)
+        ring = shape.outline(4 * ENDS_PER_SIDE)
         stretches = np.stack([ring, np.roll(ring, -1, axis=0)], axis=1)
     else:
-        steps = np.linspace(0, 1, STEPS)[:, None]
+        steps = np.linspace(0, 1, ENDS_PER_SIDE)[:, None]
         sides = [start + steps * edge for start, edge in zip(shape.vertices, shape.edges, strict=True)]
         stretches = np.vstack([np.stack([side[:-1], side[1:]], axis=1) for side in sides])
         middles, shares = shape.vertices + shape.edges / 2, seen_shares(shape, points)
-        hidden = [middle for middle, share in zip(middles, shares, strict=True) if share < HARDLY]
+        hidden = [middle for middle, share in zip(middles, shares, strict=True) if share < HARDLY_SEEN]
         marks = [BARS.text(middle, "?", VERMILION, "middle", (0, 6), 18) for middle in hidden]
     seen = is_seen(stretches.mean(axis=1), points)
     dashes = np.flatnonzero(~seen)[::2]
@@ -207,16 +207,22 @@ def _outline(shape: Shape, points: Floats) -> list[str]:
 
 def _bars(found: tuple[Fitted, ...], misfits: Floats, prices: Floats, best: int) -> list[str]:
     """Draw below the shape what each candidate costs: its misfit, and the price of its numbers."""
-    (left, right), least = BAR, float(np.min(misfits + prices))
-    unit = (right - left) / (LONGEST * max(least, 1.0))
+    (left, right), least = BAR_ENDS, float(np.min(misfits + prices))
+    unit = (right - left) / (LONGEST_BAR * max(least, 1.0))
     floor = BARS.y[0]
     parts = [BARS.area([(-0.2, floor), (0.2, floor), (0.2, -0.138), (-0.2, -0.138)], "#FFFFFF", 1.0)]
     parts.append(BARS.segments([(-0.2, -0.138)], [(0.2, -0.138)], PALE))
-    parts += [BARS.text((-0.195, -0.158), "cost [-] =", INK), BARS.points([(-0.108, -0.155)], BLUE, "square", 10)]
-    parts += [BARS.text((-0.098, -0.158), "misfit +", INK), BARS.points([(-0.033, -0.155)], ORANGE, "diamond", 9)]
+    parts += [
+        BARS.text((-0.195, -0.158), "cost [-] =", INK),
+        BARS.points([(-0.108, -0.155)], BLUE, "square", 10),
+    ]
+    parts += [
+        BARS.text((-0.098, -0.158), "misfit +", INK),
+        BARS.points([(-0.033, -0.155)], ORANGE, "diamond", 9),
+    ]
     parts += [BARS.text((-0.023, -0.158), "price of its numbers", INK)]
     for row, (one, misfit, price) in enumerate(zip(found, misfits.tolist(), prices.tolist(), strict=True)):
-        y = TOP_BAR - ROW * row
+        y = FIRST_BAR - BAR_ROW * row
         name = ("\u25b6 " if row == best else "") + one.kind
         parts.append(BARS.text((left - 0.004, y - 0.005), name, INK if row == best else GREY, "end"))
         if one.shape is None:
@@ -225,13 +231,13 @@ def _bars(found: tuple[Fitted, ...], misfits: Floats, prices: Floats, best: int)
         middle = min(left + misfit * unit, right)
         end = min(left + (misfit + price) * unit, right)
         parts += [_bar(left, middle, y, BLUE), _bar(middle, end, y, ORANGE)]
-        cut = " \u226b" if misfit + price > LONGEST * max(least, 1.0) else ""
+        cut = " \u226b" if misfit + price > LONGEST_BAR * max(least, 1.0) else ""
         parts.append(BARS.text((end + 0.004, y - 0.005), f"{misfit + price:,.0f}{cut}", INK))
     return parts
 
 
 def _bar(start: float, end: float, y: float, color: str) -> str:
-    half = 0.3 * ROW
+    half = 0.3 * BAR_ROW
     return BARS.area([(start, y - half), (end, y - half), (end, y + half), (start, y + half)], color, 0.85)
 
 
@@ -241,7 +247,7 @@ def _title(kind: Kind, margin: float, truth: Kind) -> str:
 
 
 def _verdict(margin: float) -> str:
-    return "sure" if margin > SURE else "not sure"
+    return "sure" if margin > VERY_STRONG else "not sure"
 
 
 def _says(kind: Kind, margin: float, shape: str, noise: float, views: int, n_points: int) -> str:

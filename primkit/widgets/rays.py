@@ -18,7 +18,7 @@ from ..world import World
 from .drawing import Frame, board_frame, picture
 from .slider import Explorer, Picture, Slider, explore
 
-BOARD = World(
+RAYS_BOARD = World(
     [
         Circle((-0.22, 0.2), 0.09),
         Polygon([(0.1, -0.28), (0.34, -0.2), (0.3, -0.08), (0.06, -0.16)]),
@@ -53,17 +53,17 @@ def rays() -> Explorer:
 def draw_rays(beams: int, noise: float, reach: float, x: float, y: float, heading: float) -> str:
     """Draw one scan of the board: noise in mm, range and position in m, heading in degrees; seed 0."""
     pose = np.array([x, y, np.radians(heading)])
-    scans = scan(BOARD, pose, Lidar(beams=beams, noise_std=noise / 1000, range_max=reach), rng=0)
+    scans = scan(RAYS_BOARD, pose, Lidar(beams=beams, noise_std=noise / 1000, range_max=reach), rng=0)
     hits, bearings = scans.hits[0], pose[2] + scans.angles
     ends = pose[:2] + np.minimum(scans.ranges[0], reach)[:, None] * np.column_stack(
         [np.cos(bearings), np.sin(bearings)]
     )
     starts = np.broadcast_to(pose[:2], ends.shape)
-    frame, n = board_frame(BOARD.size), int(hits.sum())
+    frame, n = board_frame(RAYS_BOARD.size), int(hits.sum())
     inside = bool(scans.inside[0])
     return picture(
         frame,
-        *(frame.shape(shape, width=1) for shape in BOARD.shapes),
+        *(frame.shape(shape, width=1) for shape in RAYS_BOARD.shapes),
         "" if inside else frame.segments(starts[~hits], ends[~hits], PALE, 0.7),
         frame.segments(starts[hits], ends[hits], ORANGE, 0.9),
         frame.points(ends[hits], VERMILION, size=4.5),

@@ -28,15 +28,15 @@ from .slider import Choice, Explorer, Picture, Slider, explore
 Weights = tuple[float, float, float]  # of shape, centre and dimensions; their sum is 1
 
 # A fifth of the published trials: on these maps the kinds are the same ones, and the scores within 5 mm too.
-METHODS = {"PAPER": replace(PAPER, line_trials=2000), "ROBUST": ROBUST}
-LOOKS = {"PAPER": (VERMILION, "square"), "ROBUST": (BLUE, "dot")}
-MAPS = ("4-01", "4-03", "4-10")  # on the second and third, circles are named wrongly even without noise
-WIDEST = 20.0  # mm: the largest tolerance
-CURVE = np.linspace(0.0, WIDEST, 201)  # mm
+QUICK_METHODS = {"PAPER": replace(PAPER, line_trials=2000), "ROBUST": ROBUST}
+METHOD_SIGNS = {"PAPER": (VERMILION, "square"), "ROBUST": (BLUE, "dot")}
+SCORED_MAPS = ("4-01", "4-03", "4-10")  # on the second and third, circles are named wrongly even without noise
+MOST_TOLERANCE = 20.0  # mm: the largest tolerance
+CURVE_TOLERANCES = np.linspace(0.0, MOST_TOLERANCE, 201)  # mm
 
 # Below the curves there is room for the weights and the legend.
-FRAME = Frame(
-    (0.0, WIDEST),
+SCORE_FRAME = Frame(
+    (0.0, MOST_TOLERANCE),
     (-0.46, 1.05),
     "tolerance [mm]",
     "weighted accuracy [-]",
@@ -45,9 +45,9 @@ FRAME = Frame(
     x_ticks=(0, 5, 10, 15, 20),
     y_ticks=(0.0, 0.2, 0.4, 0.6, 0.8, 1.0),
 )
-BAR = (-0.055, -0.135)  # top and bottom of the bar of weights
-TIE = 1e-9
-LETTER = 6.6  # px: the width of one letter in the bar
+WEIGHT_BAR = (-0.055, -0.135)  # top and bottom of the bar of weights
+SCORE_TIE = 1e-9
+LETTER_WIDTH = 6.6  # px: the width of one letter in the bar
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,10 +77,10 @@ def scoring() -> Explorer:
     start = CENTER_WEIGHT / (1 - SHAPE_WEIGHT)
     return explore(
         draw_scores,
-        Slider("tolerance", 0.0, WIDEST, 0.5, start=5.0, unit="mm"),
+        Slider("tolerance", 0.0, MOST_TOLERANCE, 0.5, start=5.0, unit="mm"),
         Slider("shape", 0.0, 1.0, 0.05, start=SHAPE_WEIGHT, label="weight of shape"),
         Slider("center", 0.0, 1.0, 0.05, start=round(start, 2), label="centre's part of the rest"),
-        Choice("board", MAPS, start="4-03", label="map"),
+        Choice("board", SCORED_MAPS, start="4-03", label="map"),
         Slider("noise", 0, 10, 5, start=0, unit="mm"),
         settings={
             "the paper's weights": {},
@@ -94,7 +94,7 @@ def scoring() -> Explorer:
 def draw_scores(tolerance: float, shape: float, center: float, board: str, noise: int) -> str:
     """Draw both methods' scores against the tolerance [mm], two-sided and one-sided; noise in mm."""
     weights = (shape, (1 - shape) * center, (1 - shape) * (1 - center))
-    results = {name: errors_of(name, board, noise) for name in METHODS}
+    results = {name: errors_of(name, board, noise) for name in QUICK_METHODS}
     here = np.array([tolerance]) / 1000
     fair, lax = (
         {name: float(weighted(result, here, weights, one_sided=one)[0]) for name, result in results.items()}
@@ -102,21 +102,21 @@ def draw_scores(tolerance: float, shape: float, center: float, board: str, noise
     )
     parts = []
     for name, result in results.items():
-        color, marker = LOOKS[name]
-        curves = [weighted(result, CURVE / 1000, weights, one_sided=one) for one in (True, False)]
+        color, marker = METHOD_SIGNS[name]
+        curves = [weighted(result, CURVE_TOLERANCES / 1000, weights, one_sided=one) for one in (True, False)]
         parts += [
-            FRAME.polyline(np.column_stack([CURVE, curves[0]]), color, 1.5, "5 3"),
-            FRAME.polyline(np.column_stack([CURVE, curves[1]]), color, 2.5),
-            FRAME.points([(tolerance, fair[name])], color, marker, 11),
-            FRAME.points([(tolerance, lax[name])], color, "ring", 16),
+            SCORE_FRAME.polyline(np.column_stack([CURVE_TOLERANCES, curves[0]]), color, 1.5, "5 3"),
+            SCORE_FRAME.polyline(np.column_stack([CURVE_TOLERANCES, curves[1]]), color, 2.5),
+            SCORE_FRAME.points([(tolerance, fair[name])], color, marker, 11),
+            SCORE_FRAME.points([(tolerance, lax[name])], color, "ring", 16),
         ]
     return picture(
-        FRAME,
-        FRAME.segments([(0, 0), (0, 1)], [(WIDEST, 0), (WIDEST, 1)], PALE),
-        FRAME.segments([(tolerance, 0)], [(tolerance, 1.05)], GREY, 1.5, "2 3"),
+        SCORE_FRAME,
+        SCORE_FRAME.segments([(0, 0), (0, 1)], [(MOST_TOLERANCE, 0), (MOST_TOLERANCE, 1)], PALE),
+        SCORE_FRAME.segments([(tolerance, 0)], [(tolerance, 1.05)], GREY, 1.5, "2 3"),
         *parts,
         _bar_of(weights),
-        FRAME.legend(
+        SCORE_FRAME.legend(
             [
                 ("ROBUST, two-sided", BLUE, "dot"),
                 ("PAPER, two-sided", VERMILION, "square"),
@@ -135,7 +135,7 @@ def draw_scores(tolerance: float, shape: float, center: float, board: str, noise
 def errors_of(method: str, board: str, noise: int) -> Errors:
     """Return what a method's result on a map of the suite is off by; noise in mm. Found once, then kept."""
     world = _suite()[board]
-    experiment = Experiment(board, world, method, METHODS[method], lidar=Lidar(noise_std=noise / 1000))
+    experiment = Experiment(board, world, method, QUICK_METHODS[method], lidar=Lidar(noise_std=noise / 1000))
     report = evaluate(run(experiment).found, world)
     return Errors(
         shape=report.shape_accuracy,
@@ -167,21 +167,21 @@ def _suite() -> dict[str, World]:
 
 def _two(score: float) -> str:
     """Return a score with two digits; 0.825 is lifted over the edge, where rounding could go either way."""
-    return f"{score + TIE:.2f}"
+    return f"{score + SCORE_TIE:.2f}"
 
 
 def _bar_of(weights: Weights) -> str:
     """Draw the weights as parts of one bar, each with its name where there is room for it."""
-    top, bottom = BAR
-    ends = WIDEST * np.cumsum([0.0, *weights])
+    top, bottom = WEIGHT_BAR
+    ends = MOST_TOLERANCE * np.cumsum([0.0, *weights])
     parts = []
     looks = zip(("shape", "centre", "dimensions"), weights, (GREY, SKY, PALE), strict=True)
     for left, right, (name, weight, color) in zip(ends[:-1], ends[1:], looks, strict=True):
-        room = (right - left) * FRAME.scale[0]
-        words = next((w for w in (f"{name} {weight:.2f}", f"{weight:.2f}") if LETTER * len(w) < room), "")
+        room = (right - left) * SCORE_FRAME.scale[0]
+        words = next((w for w in (f"{name} {weight:.2f}", f"{weight:.2f}") if LETTER_WIDTH * len(w) < room), "")
         corners = [(left, top), (right, top), (right, bottom), (left, bottom)]
-        parts.append(FRAME.area(corners, color, 0.45) if weight else "")
-        parts.append(FRAME.text(((left + right) / 2, bottom), words, INK, "middle", (0, -7), 11) if words else "")
+        parts.append(SCORE_FRAME.area(corners, color, 0.45) if weight else "")
+        parts.append(SCORE_FRAME.text(((left + right) / 2, bottom), words, INK, "middle", (0, -7), 11) if words else "")
     return "".join(parts)
 
 
@@ -198,7 +198,10 @@ def diagram() -> Picture:
     return Picture(side_by_side(panels, captions), "Diagram: one-to-one matching, in list order and all together")
 
 
-TRUE, FOUND = np.array([(0.0, 0.04), (0.075, 0.04)]), np.array([(0.044, 0.009), (0.106, 0.015)])  # m: the diagram's
+TRUE, FOUND = (
+    np.array([(0.0, 0.04), (0.075, 0.04)]),
+    np.array([(0.044, 0.009), (0.106, 0.015)]),
+)  # m: the diagram's
 
 
 def _pairing(pairs: list[tuple[int, int]], title: str, note: str) -> str:

@@ -27,11 +27,11 @@ from itertools import product
 from typing import Any
 
 from ..arguments import short
-from .drawing import WIDEST, sentence, side_by_side, size_of, what_it_says
+from .drawing import WIDEST_PICTURE, sentence, side_by_side, size_of, what_it_says
 
 Draw = Callable[..., str]
 
-READOUT = 640  # px: three lines of this width hold 250 letters
+READOUT_WIDTH = 640  # px: three lines of this width hold 250 letters
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ class Choice:
         """Return buttons of ipywidgets, all options in sight: Lab takes the arrow keys away from a drop-down list."""
         import ipywidgets
 
-        named = _named(self) | {"layout": _wide(WIDEST), "style": {"button_width": "auto"}}
+        named = _named(self) | {"layout": _wide(WIDEST_PICTURE), "style": {"button_width": "auto"}}
         buttons = ipywidgets.ToggleButtons(options=self.options, value=self.start, **named)
         return buttons.add_class("widget-inline-hbox")  # the name stands to the left, as beside a slider
 
@@ -171,14 +171,14 @@ class Explorer:
         width, _ = size_of(svg)
         # Of one size, whatever is drawn: the page below must not jump.
         self._image = ipywidgets.HTML(svg, layout=_wide(width))
-        self._readout = ipywidgets.HTML(_spoken(svg), layout=_wide(READOUT) | {"min_height": "66px"})
+        self._readout = ipywidgets.HTML(_spoken(svg), layout=_wide(READOUT_WIDTH) | {"min_height": "66px"})
         self._knobs = {control.name: control.widget() for control in self.controls}
         self._line_up()
         self._quiet = False
         for knob in self._knobs.values():
             knob.observe(self._redraw, names="value")
         buttons = [self._button(name) for name in self.settings]
-        row = ipywidgets.HBox(buttons, layout=_wide(WIDEST) | {"flex_flow": "row wrap"})
+        row = ipywidgets.HBox(buttons, layout=_wide(WIDEST_PICTURE) | {"flex_flow": "row wrap"})
         return ipywidgets.VBox([*self._knobs.values(), row, self._image, self._readout])
 
     def _line_up(self) -> None:

@@ -19,10 +19,10 @@ from ..robot import AXLE, WHEEL, moved
 from .drawing import Frame, board_frame, picture
 from .slider import Explorer, Picture, Slider, explore
 
-SIZE = 1.0  # m: side of the board
-START = np.array([0.0, -0.1, np.pi / 2])  # x [m], y [m], heading [rad]
-SMOOTH = 100  # places that an arc is drawn through
-STRAIGHT = 10.0  # m: a larger circle is straight as far as one sees
+BOARD_SIDE = 1.0  # m: side of the board
+START_POSE = np.array([0.0, -0.1, np.pi / 2])  # x [m], y [m], heading [rad]
+ARC_PLACES = 100  # places that an arc is drawn through
+STRAIGHT_RADIUS = 10.0  # m: a larger circle is straight as far as one sees
 
 
 @cache
@@ -47,9 +47,9 @@ def wheels() -> Explorer:
 
 def draw_wheels(left: float, right: float, seconds: float, pieces: int) -> str:
     """Draw the arc, the circle that it is a part of, and the way in straight pieces: speeds in rad/s."""
-    speeds, frame = (left, right), board_frame(SIZE)
-    arc = np.array([moved(START, speeds, time) for time in np.linspace(0, seconds, SMOOTH)])
-    straight = in_pieces(START, left, right, seconds, pieces)
+    speeds, frame = (left, right), board_frame(BOARD_SIDE)
+    arc = np.array([moved(START_POSE, speeds, time) for time in np.linspace(0, seconds, ARC_PLACES)])
+    straight = in_pieces(START_POSE, left, right, seconds, pieces)
     off = 1000 * float(np.hypot(*(straight[-1] - arc[-1])[:2]))
     turn, radius = WHEEL * (right - left) / AXLE * seconds, turning_radius(left, right)
     return picture(
@@ -58,13 +58,13 @@ def draw_wheels(left: float, right: float, seconds: float, pieces: int) -> str:
         frame.polyline(arc[:, :2], BLUE, 3),
         frame.polyline(straight[:, :2], VERMILION, 2, "6 4"),
         frame.points(straight[:, :2], VERMILION, "square", 5),
-        frame.robot(START, GREY),
+        frame.robot(START_POSE, GREY),
         frame.robot(arc[-1], INK),
         frame.legend(
             [
                 ("arc", BLUE, "line"),
                 (f"{_pieces(pieces)}: {off:.0f} mm off", VERMILION, "square"),
-                *([("turning centre", ORANGE, "cross")] if abs(radius) <= SIZE / 2 else []),
+                *([("turning centre", ORANGE, "cross")] if abs(radius) <= BOARD_SIDE / 2 else []),
             ]
         ),
         title=_title(left, right, turn),
@@ -89,14 +89,14 @@ def turning_radius(left: float, right: float) -> float:
 
 def _circle(frame: Frame, radius: float) -> str:
     """Return the circle that the arc is a part of, and its middle if that is on the board."""
-    if abs(radius) > STRAIGHT:
+    if abs(radius) > STRAIGHT_RADIUS:
         return ""
-    x, y, heading = START.tolist()
+    x, y, heading = START_POSE.tolist()
     middle = np.array([x - radius * np.sin(heading), y + radius * np.cos(heading)])
-    ring = middle + abs(radius) * np.column_stack([f(np.linspace(0, 2 * np.pi, SMOOTH)) for f in (np.cos, np.sin)])
-    seen = np.abs(ring).max(axis=1) <= SIZE / 2
+    ring = middle + abs(radius) * np.column_stack([f(np.linspace(0, 2 * np.pi, ARC_PLACES)) for f in (np.cos, np.sin)])
+    seen = np.abs(ring).max(axis=1) <= BOARD_SIDE / 2
     starts = seen[:-1] & seen[1:]
-    cross = frame.points([middle], ORANGE, "cross", 10) if abs(radius) <= SIZE / 2 else ""
+    cross = frame.points([middle], ORANGE, "cross", 10) if abs(radius) <= BOARD_SIDE / 2 else ""
     return frame.segments(ring[:-1][starts], ring[1:][starts], PALE, 1) + cross
 
 

@@ -2,23 +2,6 @@
 
 In:  settings by name, the sweeps' names, a number of maps, a seed.
 Out: ``AccuracyTable`` and ``PartialTable``, which print, show as HTML and are written as CSV.
+
+Its names are those of ``study``, which a user imports.
 """
-
-from .partial import PartialLine, PartialTable, run_partial
-from .sweeps import REMEDIES, SWEEPS, UNTUNED
-from .table import AccuracyLine, AccuracyTable, accuracy_as_csv, run_accuracy
-from .whole import accuracy_study
-
-__all__ = [
-    "run_accuracy",
-    "run_partial",
-    "accuracy_study",
-    "accuracy_as_csv",
-    "AccuracyTable",
-    "AccuracyLine",
-    "PartialTable",
-    "PartialLine",
-    "SWEEPS",
-    "REMEDIES",
-    "UNTUNED",
-]

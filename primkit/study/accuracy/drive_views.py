@@ -22,20 +22,19 @@ from numpy.typing import NDArray
 from ...arguments import Bools, Floats
 from ...driving.wander import wander
 from ...evaluation import match
-from ...lidar import Lidar, Scans
+from ...lidar import Lidar
 from ...measure import Detection
 from ...pipeline import ROBUST
 from ...shapes import Circle, Kind, Shape
 from ..experiment import Experiment, run
-from ..oracle import exact_ranges, hit_sides
-from ..seen_shares import share_seen
+from ..oracle import exact_hits, share_seen
 from .sweeps import UNTUNED, roomy_world
 
 N_SHAPES = 4
-ROOM = 0.10  # m: gap between shapes, wide enough to drive through
+DRIVING_GAP = 0.10  # m: gap between shapes, wide enough to drive through
 N_SCANS = 60
-SEEN = (0.4, 0.9)  # share of the outline
-INNER = 0.8  # share of a side, in its middle, that decides whether it was ever seen
+PART_SEEN = (0.4, 0.9)  # share of the outline
+INNER_SHARE = 0.8  # share of a side, in its middle, that decides whether it was ever seen
 
 
 @dataclass(frozen=True)
@@ -90,19 +89,17 @@ def views_from(noise_std: float, number: int, seed: int = 0) -> list[View]:
     [('rectangle', True)]
     """
     world_rng, way_rng = np.random.default_rng([UNTUNED, seed, number, N_SCANS]).spawn(2)
-    world = roomy_world(N_SHAPES, ROOM, world_rng)
+    world = roomy_world(N_SHAPES, DRIVING_GAP, world_rng)
     drive = wander(world, N_SCANS, rng=way_rng)
     lidar = Lidar(noise_std=noise_std)
     done = run(Experiment(f"drive-{number + 1}", world, "ROBUST", ROBUST, lidar, seed=UNTUNED + seed, drive=drive))
-    exact = exact_ranges(world, done.scans, lidar)
-    hits = Scans(done.scans.poses, done.scans.angles, exact, done.scans.inside).points()
-    owners = hit_sides(world, hits)
+    hits, owners = exact_hits(world, done.scans, lidar)
     pairs = {t: done.found[f] for f, t in match([d.shape for d in done.found], world.shapes)}
     views = []
     for i, shape in enumerate(world.shapes):
         own = owners[:, 0] == i
         seen = share_seen(shape, hits[own])
-        if SEEN[0] <= seen <= SEEN[1]:
+        if PART_SEEN[0] <= seen <= PART_SEEN[1]:
             views.append(view_of(number, shape, seen, unseen_sides(shape, hits[own], owners[own, 1]), pairs.get(i)))
     return views
 
@@ -129,7 +126,7 @@ def unseen_sides(shape: Shape, hits: Floats, sides: NDArray[np.int64]) -> Bools:
     if isinstance(shape, Circle):
         return np.array([len(hits) == 0])
     along = ((hits - shape.vertices[sides]) * shape.edges[sides]).sum(axis=1) / shape.sides[sides] ** 2
-    inner = np.abs(along - 0.5) <= INNER / 2
+    inner = np.abs(along - 0.5) <= INNER_SHARE / 2
     return ~np.isin(np.arange(len(shape.vertices)), sides[inner])
 
 

@@ -15,24 +15,26 @@ of a second to map.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import ClassVar
 
 import numpy as np
 
 from ...arguments import ROUNDING, Floats, as_count, as_positive
-from ..estimate import Estimate, Z, pooled_share
+from ...table import Table, as_csv
+from ..estimate import Z95, Estimate, columns_of, in_columns, pooled_share
 from ..many import checked_jobs, in_parallel
-from ..table import as_block, as_csv, as_html, wrapped
-from .drive_views import N_SCANS, N_SHAPES, ROOM, View, views_from
+from .accuracy_table import COARSE
+from .drive_views import DRIVING_GAP, N_SCANS, N_SHAPES, View, views_from
 from .sweeps import UNTUNED
 
-NOISES = (0.0, 0.001, 0.002, 0.005)  # m
-TOLERANCE = 0.005  # m
+PARTIAL_NOISES = (0.0, 0.001, 0.002, 0.005)  # m
 
-KIND_HEADER = ("", "n", "right kind", "n", "if all sides were seen")
-FIND_HEADER = ("", "n", "visible and measured", "n", "hidden, but claimed")
-RIGHT_HEADER = ("", "n", "right within 5 mm", "wrong kinds too", "within 1.96 std")
+PARTIAL_HEADER = (
+    *("", "n", "right kind", "n", "if all sides were seen"),
+    *("n", "visible and measured", "n", "hidden, but claimed"),
+    *("n", "right within 5 mm", "wrong kinds too", "within 1.96 std"),
+)
 
 
 @dataclass(frozen=True)
@@ -81,13 +83,12 @@ class PartialLine:
     strict: Estimate | None
     covered: Estimate | None
 
-    def cells(self) -> tuple[tuple[str, ...], ...]:
-        """Return the line's texts in three parts: kinds, what was measured, how right that is."""
-        name = f"{1000 * self.noise_std:g} mm"
+    def cells(self) -> tuple[str, ...]:
+        """Return the line as texts: kinds, what was measured, how right that is."""
         kinds = (str(self.n_shapes), _text(self.kind), str(self.n_whole), _text(self.whole))
         found = (str(self.n_visible), _text(self.found), str(self.n_hidden), _text(self.claimed))
         right = (str(self.n_measured), _text(self.right), _text(self.strict), _text(self.covered))
-        return (name, *kinds), (name, *found), (name, *right)
+        return (f"{1000 * self.noise_std:g} mm", *kinds, *found, *right)
 
 
 @dataclass(frozen=True)
@@ -99,37 +100,30 @@ class PartialTable:
     title: str = "Partial views: random drives that see 40 to 90 % of each outline"
     file: ClassVar[str] = "partial.csv"
 
+    def table(self) -> Table:
+        """Return the lines as texts, in three parts: kinds, what was measured, how right that is."""
+        drives = " or ".join(dict.fromkeys(str(line.n_drives) for line in self.lines))
+        rows = [(f"range noise, {drives} drives",), *(line.cells() for line in self.lines)]
+        return Table(PARTIAL_HEADER, rows, self.title, self.notes, folds=(5, 9))
+
     def __str__(self) -> str:
-        text = [self.title]
-        for part, header in enumerate((KIND_HEADER, FIND_HEADER, RIGHT_HEADER)):
-            text += ["", *as_block(header, [(self._heading(), [line.cells()[part] for line in self.lines])])]
-        return "\n".join([*text, *wrapped(self.notes)])
+        return str(self.table())
 
     def _repr_html_(self) -> str:
-        rows = [line.cells()[0] + line.cells()[1][1:] + line.cells()[2][1:] for line in self.lines]
-        header = KIND_HEADER + FIND_HEADER[1:] + RIGHT_HEADER[1:]
-        return as_html(self.title, header, [(self._heading(), rows)], self.notes)
-
-    def _heading(self) -> str:
-        return f"range noise, {' or '.join(dict.fromkeys(str(line.n_drives) for line in self.lines))} drives"
+        return self.table()._repr_html_()
 
     def csv(self) -> str:
         """Return the lines with all their numbers as CSV: shares from 0 to 1, noise in metres."""
-        counts = ("n_drives", "n_shapes", "n_whole", "n_visible", "n_hidden", "n_measured", "n_claimed")
-        shares = ("kind", "whole", "found", "claimed", "right", "strict", "covered")
-        rows = []
-        for line in self.lines:
-            estimates: list[Estimate | None] = [getattr(line, name) for name in shares]
-            numbers = [n for e in estimates for n in ((None,) * 3 if e is None else (e.value, e.low, e.high))]
-            rows.append((line.noise_std, *(getattr(line, name) for name in counts), *numbers))
-        ends = [f"{name}{end}" for name in shares for end in ("", "_low", "_high")]
-        return as_csv(("noise_std_m", *counts, *ends), rows)
+        names = [field.name for field in fields(PartialLine)]  # the noise, seven counts, and estimates
+        lines = [list(vars(line).values()) for line in self.lines]
+        rows = [(*values[:8], *in_columns(values[8:])) for values in lines]
+        return as_csv(("noise_std_m", *names[1:8], *columns_of(names[8:])), rows)
 
 
 def run_partial(
     n_drives: int = 100,
     *,
-    noises: Iterable[float] = NOISES,
+    noises: Iterable[float] = PARTIAL_NOISES,
     seed: int = 0,
     jobs: int | None = -1,
     progress: bool = True,
@@ -167,10 +161,10 @@ def run_partial(
 
 def partial_line(noise_std: float, n_drives: int, views: Sequence[View]) -> PartialLine:
     """Return the shares over all views at one noise; drives are the independent draws."""
-    sums = np.zeros((n_drives, len(COUNTED)))
+    sums = np.zeros((n_drives, len(VIEW_COUNTS)))
     for view in views:
         sums[view.drive] += _counted(view)
-    of = dict(zip(COUNTED, sums.T, strict=True))
+    of = dict(zip(VIEW_COUNTS, sums.T, strict=True))
     return PartialLine(
         noise_std=noise_std,
         n_drives=n_drives,
@@ -188,20 +182,20 @@ def partial_line(noise_std: float, n_drives: int, views: Sequence[View]) -> Part
 
 
 # What is counted of each view; strays are dimensions said to be measured of a shape of a wrong kind.
-COUNTED = (
+VIEW_COUNTS = (
     *("shapes", "kind", "whole", "whole_kind", "strays"),
     *("visible", "found", "hidden", "claimed", "measured", "right", "covered"),
 )
 
 
 def _counted(view: View) -> Floats:
-    """Return what one view adds to each of ``COUNTED``."""
+    """Return what one view adds to each of ``VIEW_COUNTS``."""
     kind, measured = view.kind_right, np.array(view.measured, dtype=bool)
     first = (True, kind, view.whole, view.whole and kind, 0 if kind else measured.sum())
     if not kind:
         return np.array([*first, *7 * [0]], dtype=float)
     error, std, hidden = np.abs(view.errors), np.array(view.stds), np.array(view.hidden)
-    right, covered = measured & (error <= TOLERANCE + ROUNDING), measured & (error <= Z * std)
+    right, covered = measured & (error <= COARSE + ROUNDING), measured & (error <= Z95 * std)
     flags = (~hidden, ~hidden & measured, hidden, hidden & measured, measured, right, covered)
     return np.array([*first, *(f.sum() for f in flags)], dtype=float)
 
@@ -212,8 +206,8 @@ def _text(estimate: Estimate | None) -> str:
 
 def _notes(n_drives: int, seed: int) -> tuple[str, ...]:
     return (
-        f"{n_drives} maps with {N_SHAPES} free shapes, gaps of {100 * ROOM:g} cm; on each a smooth random drive of "
-        f"{N_SCANS} scans that keeps 4 cm from outlines. ROBUST is told nothing.",
+        f"{n_drives} maps with {N_SHAPES} free shapes, gaps of {100 * DRIVING_GAP:g} cm; on each a smooth random drive "
+        f"of {N_SCANS} scans that keeps 4 cm from outlines. ROBUST is told nothing.",
         "right kind: share of the shapes that were found as what they are. A side that was never seen may leave nobody "
         "able to tell: beside it stand the shapes of which all sides were seen.",
         "All below is about dimensions of shapes with the right kind. visible: each side that the dimension hangs on "

@@ -34,8 +34,8 @@ from ..experiment import Experiment
 from ..oracle import Oracle
 
 UNTUNED = 27_182_818
-MIXED = 6  # shapes on a map, at most, where the number is not what is changed
-CROWDED = 0.03  # m: gap between shapes on maps of more than six, which have no room for 5 cm
+MOST_MIXED = 6  # shapes on a map, at most, where the number is not what is changed
+CROWDED_GAP = 0.03  # m: gap between shapes on maps of more than six, which have no room for 5 cm
 
 # Each remedy over the published method switched on in turn, and kept.
 REMEDIES: Mapping[str, Settings] = {
@@ -111,17 +111,17 @@ class Sweep:
 
 PLAIN = Condition()
 HARD = Condition(gap=0.03, noise_std=0.002, spurious=0.02)
-NOISES = (0, 1, 2, 5, 10)  # mm
-FREE = "Free maps (any rotation, irregular), 1 to 6 shapes, gaps of 5 cm"
+NOISES_MM = (0, 1, 2, 5, 10)  # mm
+FREE_MAPS = "Free maps (any rotation, irregular), 1 to 6 shapes, gaps of 5 cm"
 
 
 def _noisy(start: Condition) -> tuple[Level, ...]:
-    return tuple(Level(f"noise {mm} mm", mm, replace(start, noise_std=mm / 1000)) for mm in NOISES)
+    return tuple(Level(f"noise {mm} mm", mm, replace(start, noise_std=mm / 1000)) for mm in NOISES_MM)
 
 
 def _crowd(n: int) -> Level:
     name = f"{n} shape{'s' * (n != 1)}"
-    return Level(name, n, replace(PLAIN, n_shapes=n, gap=PLAIN.gap if n <= MIXED else CROWDED))
+    return Level(name, n, replace(PLAIN, n_shapes=n, gap=PLAIN.gap if n <= MOST_MIXED else CROWDED_GAP))
 
 
 SWEEPS: Mapping[str, Sweep] = {
@@ -131,7 +131,7 @@ SWEEPS: Mapping[str, Sweep] = {
         _noisy(Condition("suite")),
         "The paper's 34 maps; with noise each is scanned several times, and its runs are one draw of the bootstrap.",
     ),
-    "noise": Sweep("Range noise, free maps", "range noise [mm]", _noisy(PLAIN), f"{FREE}."),
+    "noise": Sweep("Range noise, free maps", "range noise [mm]", _noisy(PLAIN), f"{FREE_MAPS}."),
     "shapes": Sweep(
         "Number of shapes, free maps",
         "shapes (gaps 5 cm; above 6: 3 cm)",
@@ -142,13 +142,13 @@ SWEEPS: Mapping[str, Sweep] = {
         "Number of scans, free maps",
         "way-points scanned from",
         tuple(Level(f"{n} scans", n, replace(PLAIN, n_scans=n if n < 77 else None)) for n in (10, 20, 40, 77)),
-        f"{FREE}, no noise; random way-points out of the 77. With few, sides are not seen by anyone.",
+        f"{FREE_MAPS}, no noise; random way-points out of the 77. With few, sides are not seen by anyone.",
     ),
     "spurious": Sweep(
         "Spurious returns, free maps",
         "spurious beams [%]",
         tuple(Level(f"{p} % spurious", p, replace(PLAIN, spurious=p / 100)) for p in (0, 1, 2, 5)),
-        f"{FREE}, no noise; a spurious beam returns a random range.",
+        f"{FREE_MAPS}, no noise; a spurious beam returns a random range.",
     ),
     "gap": Sweep(
         "Gap between shapes, free maps",
@@ -161,7 +161,8 @@ SWEEPS: Mapping[str, Sweep] = {
         "",
         (Level("plain", 0, PLAIN), Level("hard", 1, HARD)),
         "Each method has all remedies of those above it; ROBUST adds the second opinion. "
-        f"plain: {FREE[0].lower()}{FREE[1:]}, no noise. hard: gaps of 3 cm, 2 mm noise, 2 % spurious returns.",
+        f"plain: {FREE_MAPS[0].lower()}{FREE_MAPS[1:]}, no noise. "
+        "hard: gaps of 3 cm, 2 mm noise, 2 % spurious returns.",
         remedies=True,
     ),
 }
@@ -197,7 +198,7 @@ def _free(condition: Condition, n_maps: int, seed: int) -> Iterator[tuple[str, W
     """Yield the name, the board, and the way-points to scan from (None: all) of each free map."""
     for number in range(n_maps):
         world_rng, drive_rng = np.random.default_rng([UNTUNED, seed, number]).spawn(2)
-        n = condition.n_shapes or 1 + number % MIXED
+        n = condition.n_shapes or 1 + number % MOST_MIXED
         world, drive = roomy_world(n, condition.gap, world_rng), None
         if condition.n_scans is not None:
             every = waypoints(world.size)

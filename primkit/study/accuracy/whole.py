@@ -16,9 +16,9 @@ from pathlib import Path
 from ...formats import StrPath, write_atomically
 from ...pipeline import Settings
 from ..many import METHODS
+from .accuracy_table import AccuracyTable, accuracy_as_csv, run_accuracy
 from .partial import PartialTable, run_partial
 from .sweeps import SWEEPS
-from .table import AccuracyTable, accuracy_as_csv, run_accuracy
 
 PARTIAL = "partial"
 STUDIES = (*SWEEPS, PARTIAL)

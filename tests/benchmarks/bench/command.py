@@ -31,7 +31,7 @@ TEXT = "time primkit beside other tools that do the same work"
 EXAMPLES = (
     "examples:\n"
     "  python -m tests.benchmarks --quick                  rough figures, within a minute\n"
-    "  python -m tests.benchmarks scan sizes --out bench   two of them in full; CSV and a figure\n"
+    "  python -m tests.benchmarks scan sizes --out bench   two in full; CSV and a figure\n"
     "\nbenchmarks:\n" + "".join(f"  {name:8} {text}\n" for name, text in NAMES.items())
 )
 CSV, PICTURE = "bench.csv", "bench.png"

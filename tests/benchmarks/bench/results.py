@@ -16,12 +16,11 @@ one scan
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import groupby
 
-from primkit.study.table import as_csv
+from primkit.table import Table, as_csv
 
 from .clock import Spread
 
@@ -31,7 +30,6 @@ CSV_HEADER = (
     *("bench", "case", "tool", "size", "unit", "cost", "cost_low", "cost_high"),
     *("ratio_to", "ratio", "ratio_low", "ratio_high", "facts"),
 )
-WIDTH = 110  # of the notes below a table
 ABSENT = "absent"
 
 
@@ -90,22 +88,17 @@ class Result:
     rows: tuple[Row, ...]
     notes: tuple[str, ...] = ()
 
-    def __str__(self) -> str:
+    def table(self) -> Table:
+        """Return the rows as texts, task by task."""
         facts = list(dict.fromkeys(name for row in self.rows for name in row.facts))
         paired = [f"{self.ratio_to} (from-to)"] if any(row.ratio for row in self.rows) else []
-        header = ("", f"{self.unit} (from-to)", *paired, *facts)
-        body: list[tuple[str, list[tuple[str, ...]]]] = [
-            (case, [_cells(row, facts, paired=bool(paired)) for row in rows])
-            for case, rows in groupby(self.rows, key=lambda row: row.case)
-        ]
-        every = [header, *(cells for _, rows in body for cells in rows)]
-        widths = [max(len(cells[i]) for cells in every) for i in range(len(header))]
-        text = [self.title, "", _aligned(header, widths), "  ".join("-" * width for width in widths)]
-        for case, rows in body:
-            text += [case, *(_aligned(cells, widths) for cells in rows)]
-        for number, note in enumerate(self.notes):
-            text += [*([""] if number == 0 else []), *textwrap.wrap(note, WIDTH)]
-        return "\n".join(text)
+        rows: list[tuple[str, ...]] = []
+        for case, group in groupby(self.rows, key=lambda row: row.case):
+            rows += [(case,), *(_cells(row, facts, paired=bool(paired)) for row in group)]
+        return Table(("", f"{self.unit} (from-to)", *paired, *facts), rows, self.title, self.notes)
+
+    def __str__(self) -> str:
+        return str(self.table())
 
     def csv_rows(self) -> list[tuple[object, ...]]:
         """Return one line for each row: the columns of ``CSV_HEADER``."""
@@ -128,7 +121,7 @@ def _cells(row: Row, facts: Iterable[str], *, paired: bool) -> tuple[str, ...]:
     told = (_short(row.facts[name]) if name in row.facts else "" for name in facts)
     cost = ABSENT if row.cost is None else _spread(row.cost)
     ratio = ["" if row.ratio is None else _spread(row.ratio)] * paired
-    return (f" {row.tool}", cost, *ratio, *told)
+    return (row.tool, cost, *ratio, *told)
 
 
 def _spread(spread: Spread) -> str:
@@ -150,7 +143,3 @@ def _short(value: Fact) -> str:
 
 def _ends(spread: Spread | None) -> tuple[float | None, ...]:
     return (None, None, None) if spread is None else (spread.median, spread.low, spread.high)
-
-
-def _aligned(cells: Iterable[str], widths: Iterable[int]) -> str:
-    return "  ".join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True)).rstrip()

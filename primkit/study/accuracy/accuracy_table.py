@@ -24,18 +24,20 @@ import numpy as np
 from ...arguments import Floats, as_count
 from ...formats import StrPath
 from ...pipeline import Settings
-from ..estimate import Estimate, mean_of, ratio_of, share_of
+from ...table import Table, as_csv
+from ..estimate import Estimate, columns_of, in_columns, mean_of, ratio_of, share_of
 from ..many import METHODS, checked_jobs, perform_all
 from ..oracle import ORACLE, Oracle
 from ..row import Row
-from ..table import as_block, as_csv, as_html, wrapped
 from .sweeps import REMEDIES, SWEEPS, UNTUNED, Level, experiments, n_runs
 
 FINE, COARSE = 0.001, 0.005  # m: the two tolerances
 TRUTHS = "oracle"  # its name among the methods
 
-RIGHT_HEADER = ("", "within 1 mm", "within 5 mm", "right count")
-ERROR_HEADER = ("", "centre [mm]", "x oracle", "dimens. [mm]", "x oracle", "time [s]")
+ACCURACY_HEADER = (
+    *("", "within 1 mm", "within 5 mm", "right count"),
+    *("centre [mm]", "x oracle", "dimens. [mm]", "x oracle", "time [s]"),
+)
 
 
 @dataclass(frozen=True)
@@ -81,13 +83,9 @@ class AccuracyLine:
     dimension_ratio: Estimate | None
     time: float | None
 
-    def right_cells(self) -> tuple[str, ...]:
-        """Return the method and what share of it is right, as texts."""
-        return (self.method, str(self.fine), str(self.coarse), "told" if self.count is None else str(self.count))
-
-    def error_cells(self) -> tuple[str, ...]:
-        """Return how far off the method is and how long it takes, as texts."""
-        cells = []
+    def cells(self) -> tuple[str, ...]:
+        """Return the line as texts: what share is right, how far off it is, and how long it takes."""
+        cells = [self.method, str(self.fine), str(self.coarse), "told" if self.count is None else str(self.count)]
         for rms, ratio in ((self.center_rms, self.center_ratio), (self.dimension_rms, self.dimension_ratio)):
             cells += [f"{1000 * rms:.3f}", "-" if ratio is None else ratio.text(2 if ratio.value < 10 else 0)]
         return (*cells, "-" if self.time is None else f"{self.time:.3f}")
@@ -114,22 +112,19 @@ class AccuracyTable:
     notes: tuple[str, ...] = ()
     file: ClassVar[str] = "accuracy.csv"  # holds all sweeps
 
-    def groups(self) -> list[tuple[str, list[AccuracyLine]]]:
-        """Return each level's heading with its lines."""
-        return [(_heading(level[0]), level) for level in self._levels()]
-
-    def _levels(self) -> list[list[AccuracyLine]]:
-        return [list(lines) for _, lines in groupby(self.lines, key=lambda line: line.level)]
+    def table(self) -> Table:
+        """Return the lines as texts, level by level."""
+        rows: list[tuple[str, ...]] = []
+        for _, lines in groupby(self.lines, key=lambda line: line.level):
+            level = list(lines)
+            rows += [(_heading(level[0]),), *(line.cells() for line in level)]
+        return Table(ACCURACY_HEADER, rows, self.title, self.notes, folds=(4,))
 
     def __str__(self) -> str:
-        right = [(heading, [line.right_cells() for line in lines]) for heading, lines in self.groups()]
-        off = [(h, [(line.method, *line.error_cells()) for line in lines]) for h, lines in self.groups()]
-        blocks = [*as_block(RIGHT_HEADER, right), "", *as_block(ERROR_HEADER, off)]
-        return "\n".join([self.title, "", *blocks, *wrapped(self.notes)])
+        return str(self.table())
 
     def _repr_html_(self) -> str:
-        groups = [(h, [line.right_cells() + line.error_cells() for line in lines]) for h, lines in self.groups()]
-        return as_html(self.title, RIGHT_HEADER + ERROR_HEADER[1:], groups, self.notes)
+        return self.table()._repr_html_()
 
 
 def run_accuracy(
@@ -224,15 +219,10 @@ def _line(level: Level, rows: Sequence[Row], oracle: Sequence[Row]) -> AccuracyL
 
 def _squares(ours: Row, oracle: Row) -> tuple[float, ...]:
     """Return how many shapes, coordinates and dimensions both have right in kind, and the sums of squared errors."""
-    both = [
-        (own, true)
-        for own, true in zip(ours.errors_by_shape(), oracle.errors_by_shape(), strict=True)
-        if own is not None and true is not None
-    ]
-    counts = [len(both), sum(len(own[0]) for own, _ in both), sum(len(own[1]) for own, _ in both)]
-    sums = [float(np.square(pair[who][part]).sum()) for who in (0, 1) for part in (0, 1) for pair in both]
-    n = len(both)
-    return (*counts, *(sum(sums[i * n : (i + 1) * n]) for i in range(4)))
+    pairs = zip(ours.errors_by_shape(), oracle.errors_by_shape(), strict=True)
+    both = [(own, true) for own, true in pairs if own is not None and true is not None]
+    counts = [sum(len(own[part]) for own, _ in both) for part in (0, 1)]
+    return (len(both), *counts, *(sum(e * e for pair in both for e in pair[who][k]) for who in (0, 1) for k in (0, 1)))
 
 
 def _by_map(names: Sequence[str], values: Floats) -> Floats:
@@ -278,14 +268,13 @@ def _notes(note: str, lines: Sequence[AccuracyLine], seed: int) -> tuple[str, ..
 def accuracy_as_csv(tables: Iterable[AccuracyTable]) -> str:
     """Return the lines of several sweeps as CSV: scores from 0 to 1, errors in millimetres, times in seconds."""
     estimates = ("fine", "coarse", "count", "center_ratio", "dimension_ratio")
-    names = {"fine": "within_1_mm", "coarse": "within_5_mm", "count": "right_count"}
-    ends = [f"{names.get(name, name)}{end}" for name in estimates for end in ("", "_low", "_high")]
-    header = ("sweep", "level", "x", "method", "n_maps", "n_runs", "n_shapes", *ends)
+    columns = columns_of(("within_1_mm", "within_5_mm", "right_count", *estimates[3:]))
+    counts = ("level", "x", "method", "n_maps", "n_runs", "n_shapes")
     rows = []
     for table in tables:
         for line in table.lines:
-            what = (table.sweep, line.level, line.x, line.method, line.n_maps, line.n_runs, line.n_shapes)
-            found: list[Estimate | None] = [getattr(line, name) for name in estimates]
-            numbers = [n for e in found for n in ((None,) * 3 if e is None else (e.value, e.low, e.high))]
-            rows.append((*what, *numbers, 1000 * line.center_rms, 1000 * line.dimension_rms, line.time))
+            numbers = in_columns(getattr(line, name) for name in estimates)
+            rms = (1000 * line.center_rms, 1000 * line.dimension_rms)
+            rows.append((table.sweep, *(getattr(line, name) for name in counts), *numbers, *rms, line.time))
+    header = ("sweep", *counts, *columns)
     return as_csv((*header, "center_rms_mm", "dimension_rms_mm", "computing_time_s"), rows)
