@@ -1,10 +1,9 @@
-"""One Jupyter and one browser for all tests in here; without a browser they are skipped, or fail where one must be."""
+"""One Jupyter and one browser for all tests in here; without them they are skipped, or fail where they must be."""
 
 import os
 import shutil
 
 import pytest
-from playwright.sync_api import sync_playwright
 
 from .lab import enter, jupyter
 
@@ -16,14 +15,21 @@ def browser():
     """Chromium without a window. PRIMKIT_BROWSER=required makes its absence a failure."""
     program = next(filter(None, map(shutil.which, BROWSERS)), None)
     if program is None:
-        absent = f"the lessons are tried in a browser, and none of these is installed: {', '.join(BROWSERS)}"
-        if os.environ.get("PRIMKIT_BROWSER") == "required":
-            pytest.fail(absent, pytrace=False)
-        pytest.skip(absent)
+        _absent(f"none of these is installed: {', '.join(BROWSERS)}")
+    try:
+        from playwright.sync_api import sync_playwright
+    except ImportError:
+        _absent("playwright, which drives it, is not installed")
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
         yield browser
         browser.close()
+
+
+def _absent(why):
+    """Skip the test, or let it fail where a browser must be."""
+    end = pytest.fail if os.environ.get("PRIMKIT_BROWSER") == "required" else pytest.skip
+    end(f"the lessons are tried in a browser: {why}")
 
 
 @pytest.fixture(scope="package")

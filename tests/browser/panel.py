@@ -4,8 +4,6 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
 
-from playwright.sync_api import TimeoutError as NotShown
-
 WATCH = (Path(__file__).parent / "watch.js").read_text(encoding="utf-8")
 OUTERMOST = ":not(.jupyter-widgets) > .jupyter-widgets:has(.noUi-handle)"
 
@@ -126,6 +124,8 @@ class Panel:
 
 def panels(page, count: int, settle: Move) -> list[Panel]:
     """Return the page's panels, as soon as there are so many, or those that are there after a while."""
+    from playwright.sync_api import TimeoutError as NotShown  # here, as all of tests/ must load without playwright
+
     found = page.locator(OUTERMOST)
     with suppress(NotShown):  # the lesson's rules say how many are missing
         if count:
