@@ -37,7 +37,7 @@ The rooms, each of which imports only those before it:
 Source: the paper's section 3.3, "Results".
 """
 
-from ..driving.scripted import drives_on, make_scripted_drive, scripted_route
+from ..driving.scripted import drives_on, scripted_route
 from ..driving.wander import wander
 from .accuracy.partial import PartialLine, PartialTable, run_partial
 from .accuracy.sweeps import REMEDIES, SWEEPS, UNTUNED
@@ -86,7 +86,6 @@ __all__ = [
     "wander",
     "scripted_route",
     "drives_on",
-    "make_scripted_drive",
     "seen_table",
     "SeenTable",
     "SeenLine",
