@@ -8,9 +8,9 @@ from matplotlib.figure import Figure
 
 import primkit as pk
 from primkit.driving.explore import Exploration
-from primkit.driving.next_views import EVERY, next_view, shown_from
+from primkit.driving.next_views import VIEW_SPACING, next_view, shown_from
 from primkit.driving.seen_map import LEAST_PLACE, SQUARE, SeenMap, joined, open_outlines
-from primkit.driving.ways import ROOM, forward, turning, ways_from, wheels_along
+from primkit.driving.ways import LEAST_ROOM, forward, turning, ways_from, wheels_along
 from primkit.lidar import Scans
 from primkit.plots import plot_tour
 from primkit.robot import BODY, FASTEST, PERIOD, advance, clearance, drive, moved
@@ -308,7 +308,7 @@ def test_who_stands_in_a_narrow_place_can_leave_it():
     board = free_board()
     board.free[46, 50] = False  # 4 cm beside the robot: less than there must be
     ways = ways_from(board, board.centers[50, 50])
-    assert ways.room[50, 50] < ROOM
+    assert ways.room[50, 50] < LEAST_ROOM
     assert np.isfinite(ways.length[70, 50])
     assert not ways.fits[48, 50]
 
@@ -351,7 +351,7 @@ def test_the_next_view_is_the_nearest_that_shows_enough():
     been[:] = False
     board.free[view.square[0] + 5, :] = False  # now nearer than the sensor's least distance
     there = next_view(worth, opaque, ways_from(board, board.centers[50, 50]), pk.Lidar(), been)
-    assert there.square[0] <= view.square[0] - EVERY or there.square[0] > view.square[0] + 5
+    assert there.square[0] <= view.square[0] - VIEW_SPACING or there.square[0] > view.square[0] + 5
 
 
 def test_the_picture_shows_the_way_and_the_scans(tours):

@@ -11,7 +11,8 @@ import pytest
 from scipy.stats import binomtest
 
 from primkit.__main__ import main
-from primkit.driving.wander import CLEARANCE, MARGIN, STEP, TURNS, wander
+from primkit.driving import wander
+from primkit.driving.wander import CLEARANCE, EDGE_MARGIN, PERIOD_WAY, TURN_CHOICES
 from primkit.evaluation import evaluate
 from primkit.grid import Grid
 from primkit.lidar import Lidar, scan
@@ -378,10 +379,10 @@ def test_a_drive_is_smooth_and_keeps_clear(seed):
     assert way.shape == (60, 3)
     assert np.array_equal(way, wander(world, 60, rng=seed))
     assert min(shape.signed_distance(way[:, :2]).min() for shape in world.shapes) >= CLEARANCE
-    assert np.abs(way[:, :2]).max() <= 0.5 - MARGIN
+    assert np.abs(way[:, :2]).max() <= 0.5 - EDGE_MARGIN
     steps = np.hypot(*np.diff(way[:, :2], axis=0).T)
-    assert np.all((np.abs(steps - STEP) < 1e-12) | (steps == 0))
-    assert np.abs(np.diff(way[:, 2])).max() <= TURNS[-1] + 1e-12
+    assert np.all((np.abs(steps - PERIOD_WAY) < 1e-12) | (steps == 0))
+    assert np.abs(np.diff(way[:, 2])).max() <= TURN_CHOICES[-1] + 1e-12
 
 
 def test_how_much_was_seen_by_hand():

@@ -21,6 +21,7 @@ from primkit.course.checking import check
 from primkit.course.course import ASSIGNMENTS, Course, new_course
 from primkit.course.grading import MIME, personal_truth
 from primkit.course.handed_in import file_faults, tree_hash
+from primkit.course.moved import MOVED, old_names
 from primkit.course.personal import personal_scans, personal_world
 from primkit.course.running import nbgrader
 from primkit.formats import save_scans
@@ -258,6 +259,7 @@ RADIUS = Task("radius", [Part("the circle's radius", 3, CHECK)])
 LOOKS = """\
 from pathlib import Path
 import primkit as pk
+from primkit.course.grading.own_board import DEMONSTRATION
 
 print(pk.load_scans("my_scans.npz").ranges.shape)"""
 
@@ -296,8 +298,50 @@ def small_course(root):
     return new_course(root / "course", assignments)
 
 
+def with_old_names(course):
+    """Let a course use the first edition's names: the table the other way round."""
+    for path in (path for path in course.root.rglob("*") if path.suffix in (".py", ".ipynb")):
+        text = path.read_text("utf-8")
+        for old, new in MOVED.items():
+            text = text.replace(f"{new}.", f"{old}.").replace(f"{new} ", f"{old} ")
+        path.write_text(text, "utf-8")
+
+
+def mended(course):
+    """Follow to the letter what ``check`` says about old names; return what it said."""
+    said = teach(course.root, "check", code=1)
+    told = re.findall(r"FAULT  (\S+): names (.+), which has moved\n +-> write (.+) in its place, everywhere", said)
+    for file, old, new in told:
+        path = course.root / file
+        path.write_text(path.read_text("utf-8").replace(old, new), "utf-8")
+    return [(file, old) for file, old, _ in told]
+
+
+def test_a_course_from_before_the_move_says_how_to_mend_it(tmp_path):
+    """That it works afterwards, the next test shows."""
+    course = small_course(tmp_path)
+    with_old_names(course)
+    assert "primkit.teaching.executing.CarefulExecute" in (course.root / "nbgrader_config.py").read_text()
+    for folder in ("submitted/ada", "release"):
+        shutil.copytree(course.root / "source" / "map", course.root / folder / "map")
+    for command in ("grade", "release"):
+        said = teach(course.root, command, "map", code=2)
+        assert "nbgrader_config.py names primkit.teaching, which has moved: write primkit.course in" in said
+    assert mended(course) == [
+        ("nbgrader_config.py", "primkit.teaching"),
+        ("grader/maps.py", "primkit.grading"),
+        ("source/map/map.ipynb", "primkit.grading.truth"),
+    ]
+    told = "release/map/map.ipynb names primkit.grading.truth, which has moved: primkit teach release map"
+    assert told in teach(course.root, "grade", "map", code=2)
+    assert [str(old) for old in old_names(course)] == [told]
+    assert mended(course) == []
+
+
 def test_everybody_is_graded_on_their_own_map(tmp_path):
     course = small_course(tmp_path)
+    with_old_names(course)  # and all works once they are mended
+    mended(course)
     (course.root / "students.csv").write_text("id,first_name,last_name,email\nada,,,\nbob,,,\n")
     assert "personal/<student>/my_scans.npz: 2 of them" in teach(course.root, "release", "map")
     scans = {name: (course.root / "personal" / name / "my_scans.npz").read_bytes() for name in ("ada", "bob")}

@@ -14,21 +14,7 @@ Out: an ``Answer``: not attempted, wrong, error or right, each with a sentence.
 >>> ray_circle.yours_or_ours(ray_circle_mine)
 ray_circle: the lesson goes on with the library's, because yours is: not attempted.
 
-The rooms, each of which imports only those before it:
-
-==============  =====================================================
-``judges.py``   numbers, labels, corners, circles, lines: right or off
-``answer.py``   ``Check``: cases, reference, judge, faults by name
-``rays.py``     lesson 01: a beam meets a wall, or a circle
-``cells.py``    lesson 02: metres to a cell, a scan into the set of cells
-``groups.py``   lesson 03: the two steps of K-Means, the silhouette
-``walls.py``    what lesson 04's functions are tried on
-``edges.py``    lesson 04: a line, its inliers, its fit, the loop around them
-``arcs.py``     lesson 05: a circle through many points, and its RMS
-``naming.py``   lesson 06: corners, sides and centre, a fair choice
-``scoring.py``  lesson 07: one-to-one pairs, the weighted accuracy
-``driving.py``  lesson 08: where two wheels take the robot, what was seen
-==============  =====================================================
+A lesson's tasks lie in a module of their own: their reference, cases and usual faults, read downwards.
 """
 
 from .answer import Answer, Check, Fault
@@ -40,30 +26,6 @@ from .groups import assign_points, silhouette, update_centers
 from .naming import fair_choice, meet, sides_and_centroid
 from .rays import ray_circle, ray_segment
 from .scoring import match_shapes, weighted_accuracy
-
-# Every task of the course, in its order: tests hold each of them against tests/answers.
-TASKS = (
-    ray_segment,
-    ray_circle,
-    to_cells,
-    occupy,
-    assign_points,
-    update_centers,
-    silhouette,
-    line_through,
-    inliers_of,
-    fit_line,
-    ransac_line,
-    fit_circle,
-    circle_rms,
-    meet,
-    sides_and_centroid,
-    fair_choice,
-    match_shapes,
-    weighted_accuracy,
-    drive_step,
-    share_seen,
-)
 
 __all__ = [
     "ray_segment",
@@ -91,3 +53,6 @@ __all__ = [
     "Fault",
     "TASKS",
 ]
+
+# Every task of the course, in its order: tests hold each of them against tests/answers.
+TASKS = tuple(task for name in __all__ if isinstance(task := globals().get(name), Check))

@@ -23,11 +23,11 @@ from ..circles import fit_circle as library_fit
 from ..shapes import Circle
 from . import judges
 from .answer import Case, Check, Fault
+from .cases import RANDOM_CASES, Args, around
 from .judges import as_circle, shown
 
 XYR = tuple[float, float, float]
 
-RANDOM_CASES = 200
 BINARY = 1024  # coordinates in 1/1024 m are exact in binary: points on a line are so to the last bit
 AS_NEAR = 1e-6  # of the RMS: far above rounding
 
@@ -40,13 +40,19 @@ def kasa(points: Floats) -> XYR | None:
 
 def rms(points: Floats, center: Floats, radius: float) -> Any:
     """Return the root of the mean of the squared radial residuals, metres."""
-    return np.sqrt(np.mean((np.hypot(*(points - center).T) - radius) ** 2))
+    return np.sqrt(np.mean(_residuals(points, center, radius) ** 2))
 
 
-_same_circle = judges.circle(1e-6)
+def _residuals(points: Floats, center: Floats, radius: float) -> Floats:
+    """Return how far outside the circle each point lies, metres."""
+    residuals: Floats = np.hypot(*(points - center).T) - radius
+    return residuals
 
 
-def _as_good(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
+_same_circle = judges.circle()
+
+
+def _as_good(got: Any, expected: Any, args: Args) -> str | None:
     """Judge a circle: the expected one, or one that lies as near to the points as Kasa's or Pratt's."""
     if isinstance(got, Circle) or (isinstance(got, (tuple, list)) and len(got) == 2):  # the lesson goes on with three
         return f"got {shown(got)}, expected three numbers: x, y and radius in metres"
@@ -64,10 +70,10 @@ def _on_arc(rng: np.random.Generator, n: int, turn: float, noise: float) -> tupl
     center, radius = rng.uniform(-0.4, 0.4, 2), float(rng.uniform(0.04, 0.2))
     bearings = rng.uniform(0, 2 * np.pi) + turn * (np.arange(n) + rng.uniform(0.2, 0.8, n)) / n
     reach = radius * (1 + noise * rng.standard_normal(n))
-    return center + reach[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)]), center, radius
+    return around(center, reach, bearings), center, radius
 
 
-def _fit_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+def _fit_cases(rng: np.random.Generator) -> Iterator[Args]:
     """Yield exact circles, points that fix none, then arcs with and without noise."""
     quarters = np.array([(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)])
     yield (0.1 * quarters,)
@@ -83,7 +89,7 @@ def _fit_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     yield (0.1 * quarters[:2],)  # too few
 
 
-def _rms_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+def _rms_cases(rng: np.random.Generator) -> Iterator[Args]:
     """Yield a point outside, one outside and one inside, all outside, then arcs beside a circle of another size."""
     yield np.array([(0.3, 0.4)]), np.zeros(2), 0.4
     yield np.array([(0.3, 0.0), (0.0, 0.1)]), np.zeros(2), 0.2
@@ -133,18 +139,6 @@ def _root_of_k(cases: list[Case]) -> bool:
     return True
 
 
-def _doubled(a: float, b: float, k: float) -> XYR:
-    return 2 * a, 2 * b, float(np.sqrt(max(k + 4 * a * a + 4 * b * b, 0.0)))
-
-
-def _doubled_center(a: float, b: float, k: float) -> XYR:
-    return 2 * a, 2 * b, float(np.sqrt(k + a * a + b * b))
-
-
-def _squared_radius(a: float, b: float, k: float) -> XYR:
-    return a, b, k + a * a + b * b
-
-
 def _circle_for_none(cases: list[Case]) -> bool:
     """Tell whether all circles are right, and something came back where there is none."""
     return all(case.off is None for case in cases if case.expected is not None)
@@ -161,9 +155,14 @@ fit_circle = Check(
         Fault("Every circle is right. Where the points fix none, return None: see the rank.", when=_circle_for_none),
         Fault("The mean of the points is the centre only when they lie all around it.", when=_gives(_by_mean)),
         Fault("The last number of the solution is k, and k = r² - a² - b²: it is not r² yet.", when=_root_of_k),
-        Fault("The radius comes out squared: is a root missing?", when=_gives(_last_step(_squared_radius))),
-        Fault(_TWICE, when=_gives(_last_step(_doubled))),
-        Fault(_TWICE, when=_gives(_last_step(_doubled_center))),
+        Fault(
+            "The radius comes out squared: is a root missing?",
+            when=_gives(_last_step(lambda a, b, k: (a, b, k + a * a + b * b))),
+        ),
+        Fault(
+            _TWICE, when=_gives(_last_step(lambda a, b, k: (2 * a, 2 * b, max(k + 4 * a * a + 4 * b * b, 0) ** 0.5)))
+        ),
+        Fault(_TWICE, when=_gives(_last_step(lambda a, b, k: (2 * a, 2 * b, (k + a * a + b * b) ** 0.5)))),
         Fault(
             "That circle goes through the first three points: all points should have a say in it.",
             when=_gives(lambda points: kasa(points[:3])),
@@ -174,16 +173,7 @@ fit_circle = Check(
 
 def _from_residuals(number: Callable[[Floats], Any]) -> Callable[[Floats, Floats, float], float]:
     """Return a faulty way that makes something else of the residuals."""
-
-    def wrong(points: Floats, center: Floats, radius: float) -> float:
-        return float(number(np.hypot(*(points - center).T) - radius))
-
-    return wrong
-
-
-def _ring_sizes(points: Floats, center: Floats, radius: float) -> float:
-    squares = ((points - center) ** 2).sum(axis=1) - radius**2
-    return float(np.sqrt(np.mean(squares**2)))
+    return lambda *args: float(number(_residuals(*args)))
 
 
 _CANCEL = "Residuals outside and inside cancel each other: square them first."
@@ -211,7 +201,7 @@ circle_rms = Check(
         ),
         Fault(
             "That compares squared lengths, as Kasa's fit does: compare the lengths.",
-            like=_ring_sizes,
+            like=lambda p, c, r: np.sqrt(np.mean((((p - c) ** 2).sum(axis=1) - r**2) ** 2)),
         ),
     ),
 )

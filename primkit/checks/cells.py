@@ -20,14 +20,12 @@ from numpy.typing import NDArray
 from ..arguments import Floats
 from ..grid import Grid
 from .answer import Case, Check, Fault
-from .judges import array, shown
+from .cases import UNDECIDED, Args, around, random_cases
+from .judges import array, no_return, shown
 
 Cells = set[tuple[int, int]]
 
-RANDOM_CASES = 200
-EDGE = 1e-6  # cells: points so near a border that rounding alone decides are left out
-FAR = 1 << 40  # cells: farther out than anything that was seen
-TURN = 2 * np.pi
+FARTHEST_CELL = 1 << 40  # farther out than anything that was seen
 
 
 # --- metres to cells ---------------------------------------------------------------------------------------
@@ -38,24 +36,24 @@ def cells_of(points: Floats, resolution: float) -> NDArray[np.int64]:
     return Grid(resolution).to_cells(points)
 
 
-def _point_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+def _point_cases(rng: np.random.Generator) -> Iterator[Args]:
     """Yield points on all sides of the origin, on borders that floats hold exactly, then random ones."""
     yield np.array([[0.025, 0.018]]), 0.01
     yield np.array([[-0.025, 0.018], [-0.004, -0.004]]), 0.01
     yield np.array([[0.5, 0.25], [-0.25, 0.0]]), 0.25  # on borders: half-open
-    n = 0
-    while n < RANDOM_CASES:
+
+    def draw(_n: int) -> Args | None:
         resolution = float(rng.choice([0.001, 0.005, 0.02, 0.1, 0.3]))
         points = rng.uniform(-0.5, 0.5, (int(rng.integers(1, 6)), 2))
-        if _clear(points, resolution):
-            n += 1
-            yield points, resolution
+        return (points, resolution) if _clear(points, resolution) else None
+
+    yield from random_cases(draw)
 
 
 def _clear(points: Floats, resolution: float) -> bool:
     """Tell whether no point is so near a border that rounding decides."""
     place = points / resolution
-    return bool((np.abs(place - np.round(place)) > EDGE).all())
+    return bool((np.abs(place - np.round(place)) > UNDECIDED).all())
 
 
 def _by(change: Any) -> Any:
@@ -109,50 +107,43 @@ def with_scan(cells: Cells, pose: Floats, angles: Floats, ranges: Floats, resolu
 def _hits(pose: Floats, angles: Floats, ranges: Floats) -> Floats:
     """Return where the beams hit, shape (H, 2), metres."""
     hit = np.isfinite(ranges)
-    bearing = pose[2] + angles[hit]
-    return pose[:2] + ranges[hit, None] * np.column_stack([np.cos(bearing), np.sin(bearing)])
+    return around(pose[:2], ranges[hit], pose[2] + angles[hit])
 
 
 def _as_set(cells: NDArray[np.int64]) -> Cells:
     return {(i, j) for i, j in cells.tolist()}
 
 
-def _scan_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+def _scan_cases(rng: np.random.Generator) -> Iterator[Args]:
     """Yield one hit, a turned robot, a scan without hits, two hits in one cell, then random scans."""
     yield set(), np.array([0.005, 0.005, 0.0]), np.array([0.0]), np.array([0.1]), 0.01
     yield {(3, 3)}, np.array([0.105, 0.005, np.pi / 2]), np.array([0.0]), np.array([0.2]), 0.01
     yield {(3, 3)}, np.array([0.005, 0.005, 0.0]), np.array([0.0, 0.5]), np.array([np.inf, np.inf]), 0.01
     yield set(), np.array([-0.1, -0.1, 0.3]), np.array([0.0, 0.01, 3.0]), np.array([0.22, 0.22, np.inf]), 0.1
-    n = 0
-    while n < RANDOM_CASES:
-        pose = np.array([*rng.uniform(-0.5, 0.5, 2), rng.uniform(0, TURN)])
-        angles = TURN * np.arange(int(rng.integers(4, 13))) / 12
+
+    def draw(_n: int) -> Args | None:
+        pose = np.array([*rng.uniform(-0.5, 0.5, 2), rng.uniform(0, 2 * np.pi)])
+        angles = 2 * np.pi * np.arange(int(rng.integers(4, 13))) / 12
         ranges = np.where(rng.random(len(angles)) < 0.3, np.inf, rng.uniform(0.05, 0.3, len(angles)))
         resolution = float(rng.choice([0.005, 0.02, 0.1]))
         hits = _hits(pose, angles, ranges)
-        if _clear(hits, resolution):
-            n += 1
-            seen = _as_set(cells_of(hits, resolution))
-            yield (
-                {(int(i), int(j)) for i, j in rng.integers(-9, 9, (3, 2))} | set(list(seen)[:1]),
-                *(
-                    pose,
-                    angles,
-                    ranges,
-                    resolution,
-                ),
-            )
+        if not _clear(hits, resolution):
+            return None
+        before = _as_set(rng.integers(-9, 9, (3, 2))) | set(list(_as_set(cells_of(hits, resolution)))[:1])
+        return before, pose, angles, ranges, resolution
+
+    yield from random_cases(draw)
 
 
-def _judge_cells(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None:
+def _judge_cells(got: Any, expected: Any, _args: Args) -> str | None:
     """Judge a set of pairs."""
     if not isinstance(got, (set, frozenset)):
-        return f"got {shown(got)}, expected a set of pairs (i, j){' (is there a return?)' if got is None else ''}"
+        return f"got {shown(got)}, expected a set of pairs (i, j){no_return(got)}"
     if got == expected:
         return None
     missing, extra = (min(map(shown, some), default="") for some in (expected - got, got - expected))
-    off = [f"the cell {missing} is missing"] * bool(missing) + [f"{extra} should not be there"] * bool(extra)
-    return "; ".join(off)
+    off = (missing and f"the cell {missing} is missing", extra and f"{extra} should not be there")
+    return "; ".join(filter(None, off))
 
 
 def _scan_with(hits: Any) -> Any:
@@ -165,31 +156,23 @@ def _scan_with(hits: Any) -> Any:
     return update
 
 
-def _around(place: Floats, bearing: Floats, ranges: Floats) -> Floats:
-    return place + ranges[:, None] * np.column_stack([np.cos(bearing), np.sin(bearing)])
-
-
-def _only_new(_cells: Cells, pose: Floats, angles: Floats, ranges: Floats, resolution: float) -> Cells:
-    return with_scan(set(), pose, angles, ranges, resolution)
-
-
 def _cut(cells: Cells, pose: Floats, angles: Floats, ranges: Floats, resolution: float) -> Cells:
     return cells | _as_set(np.trunc(_hits(pose, angles, ranges) / resolution).astype(int))
 
 
-def _misses_kept(cells: list[Case]) -> bool:
+def _misses_kept(cases: list[Case]) -> bool:
     """Tell whether the only cells too many are those of beams that met nothing, infinitely far out."""
-    wrong = [case for case in cells if case.off]
     return all(
         isinstance(case.got, set) and case.expected <= case.got and all(map(_no_place, case.got - case.expected))
-        for case in wrong
+        for case in cases
+        if case.off
     )
 
 
 def _no_place(cell: Any) -> bool:
     """Tell whether a cell is what becomes of infinity: a huge number, or none."""
     values = np.asarray(cell)
-    return values.dtype.kind in "iuf" and bool((~(np.abs(values.astype(float)) < FAR)).any())
+    return values.dtype.kind in "iuf" and bool((~(np.abs(values.astype(float)) < FARTHEST_CELL)).any())
 
 
 occupy = Check(
@@ -199,30 +182,33 @@ occupy = Check(
     _judge_cells,
     (
         Fault("A beam that met nothing reads inf and occupies no cell: leave it out first.", when=_misses_kept),
-        Fault("Where are the cells of the scans before? A map keeps what it knows.", like=_only_new),
+        Fault(
+            "Where are the cells of the scans before? A map keeps what it knows.",
+            like=lambda _cells, *scan: with_scan(set(), *scan),
+        ),
         Fault(
             "A turned robot goes wrong: angles count from its heading, pose[2].",
-            like=_scan_with(lambda pose, angles, ranges: _around(pose[:2], angles, ranges)),
+            like=_scan_with(lambda pose, angles, ranges: around(pose[:2], ranges, angles)),
         ),
         Fault(
             "Those are places seen from the robot: add where it stands.",
-            like=_scan_with(lambda pose, angles, ranges: _around(np.zeros(2), pose[2] + angles, ranges)),
+            like=_scan_with(lambda pose, angles, ranges: around(np.zeros(2), ranges, pose[2] + angles)),
         ),
         Fault(
             "x and y have changed places: x goes with the cosine.",
-            like=_scan_with(lambda pose, angles, ranges: _around(pose[:2], np.pi / 2 - pose[2] - angles, ranges)),
+            like=_scan_with(lambda pose, angles, ranges: around(pose[:2], ranges, np.pi / 2 - pose[2] - angles)),
         ),
         Fault(
             "The heading is turned round: bearings count from it, so the two are added.",
-            like=_scan_with(lambda pose, angles, ranges: _around(pose[:2], angles - pose[2], ranges)),
+            like=_scan_with(lambda pose, angles, ranges: around(pose[:2], ranges, angles - pose[2])),
         ),
         Fault(
             "The bearings are turned round: they count from the heading, so the two are added.",
-            like=_scan_with(lambda pose, angles, ranges: _around(pose[:2], pose[2] - angles, ranges)),
+            like=_scan_with(lambda pose, angles, ranges: around(pose[:2], ranges, pose[2] - angles)),
         ),
         Fault(
             "Angles are turned into degrees: sine and cosine take radians, and these are radians already.",
-            like=_scan_with(lambda pose, angles, ranges: _around(pose[:2], np.degrees(pose[2] + angles), ranges)),
+            like=_scan_with(lambda pose, angles, ranges: around(pose[:2], ranges, np.degrees(pose[2] + angles))),
         ),
         Fault("Cells below zero are wrong: int() cuts towards zero.", like=_cut),
         Fault(

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from ..arguments import Floats, Labels
 from .answer import Case, Check, Fault
-from .judges import _missing, array, number, shown
+from .judges import array, no_return, number, shown
 
 RANDOM_CASES = 200
 EDGE = 1e-6  # m: cases in which rounding alone decides which of two centres is nearer are left out
@@ -147,7 +147,7 @@ def _labels(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
     if labels.dtype.kind == "f" and labels.shape == wanted.shape and (labels == np.round(labels)).all():
         return f"got {shown(got)} as floats such as {float(labels[0])}, {kind}: only integers can number centres"
     if labels.dtype.kind not in "iu" or labels.shape == ():
-        return f"got {shown(got)}, {kind}{_missing(got)}"
+        return f"got {shown(got)}, {kind}{no_return(got)}"
     if labels.shape != wanted.shape:
         return f"got an array of shape {labels.shape}, {kind}"
     if np.array_equal(labels, wanted):

@@ -32,7 +32,7 @@ def number(unit: str = "", tolerance: float = CLOSE) -> Judge:
     def judge(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None:
         value = _floats(got)
         if value is None or value.shape != ():
-            return f"got {shown(got)}, expected a number such as {shown(expected)}{behind}{_missing(got)}"
+            return f"got {shown(got)}, expected a number such as {shown(expected)}{behind}{no_return(got)}"
         if _close(value, np.asarray(expected, dtype=float), tolerance):
             return None
         return f"got {shown(float(value))}{behind}, expected {shown(expected)}{behind}"
@@ -47,7 +47,7 @@ def array(unit: str = "", tolerance: float = CLOSE) -> Judge:
     def judge(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None:
         values, wanted = _floats(got), np.asarray(expected, dtype=float)
         if values is None:
-            return f"got {shown(got)}, expected numbers in an array of shape {wanted.shape}{_missing(got)}"
+            return f"got {shown(got)}, expected numbers in an array of shape {wanted.shape}{no_return(got)}"
         if values.shape != wanted.shape:
             return f"got an array of shape {values.shape}, expected shape {wanted.shape}"
         if _close(values, wanted, tolerance):
@@ -70,7 +70,7 @@ def groups() -> Judge:
         labels, wanted = _floats(got), np.asarray(expected)
         if labels is None or labels.shape != wanted.shape:
             found = shown(got) if labels is None else f"an array of shape {labels.shape}"
-            return f"got {found}, expected one label for each of the {len(wanted)} points{_missing(got)}"
+            return f"got {found}, expected one label for each of the {len(wanted)} points{no_return(got)}"
         if not np.array_equal(labels < 0, wanted < 0):
             return f"got {int((labels < 0).sum())} strays, expected {int((wanted < 0).sum())}"
         pairs = {(a, b) for a, b in zip(labels.tolist(), wanted.tolist(), strict=True) if b >= 0}
@@ -92,7 +92,7 @@ def points_in_any_order(unit: str = "m", tolerance: float = 1e-6) -> Judge:
 
         points, wanted = _floats(got), np.asarray(expected, dtype=float)
         if points is None or points.ndim != 2 or points.shape[1] != 2:
-            return f"got {shown(got)}, expected points in an array of shape {wanted.shape}{_missing(got)}"
+            return f"got {shown(got)}, expected points in an array of shape {wanted.shape}{no_return(got)}"
         if len(points) != len(wanted):
             return f"got {len(points)} points, expected {len(wanted)}"
         if not np.isfinite(points).all():
@@ -113,7 +113,7 @@ def circle(tolerance: float = 1e-6) -> Judge:
     def judge(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None:
         mine, (x, y, r) = as_circle(got), as_circle(expected) or (0.0, 0.0, 0.0)
         if expected is None or got is None:
-            return None if got is expected else f"got {shown(got)}, expected {shown(expected)}{_missing(got)}"
+            return None if got is expected else f"got {shown(got)}, expected {shown(expected)}{no_return(got)}"
         if mine is None:
             return f"got {shown(got)}, expected a circle: its x, y and radius in metres"
         if not np.isfinite(mine).all():
@@ -133,7 +133,7 @@ def line(tolerance: float = 1e-6) -> Judge:
     def judge(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None:
         mine, wanted = as_line(got), as_line(expected)
         if wanted is None or got is None:
-            return None if got is expected else f"got {shown(got)}, expected {shown(expected)}{_missing(got)}"
+            return None if got is expected else f"got {shown(got)}, expected {shown(expected)}{no_return(got)}"
         if mine is None:
             return f"got {shown(got)}, expected a line: the angle of its normal and its offset"
         turn = float(np.remainder(mine[0] - wanted[0] + np.pi / 2, np.pi) - np.pi / 2)  # of undirected normals
@@ -215,6 +215,6 @@ def _close(a: NDArray[np.float64], b: NDArray[np.float64], tolerance: float) -> 
     return bool(np.allclose(a, b, rtol=0.0, atol=tolerance))
 
 
-def _missing(got: Any) -> str:
+def no_return(got: Any) -> str:
     """Return the usual reason for None."""
     return " (is there a return?)" if got is None else ""

@@ -20,15 +20,15 @@ from numpy.typing import NDArray
 
 from ..arguments import Floats
 from .answer import Case, Check, Fault
-from .judges import array, number, shown
+from .cases import Args, around, random_cases
+from .judges import array, no_return, number, shown
 
 Pair = tuple[float, float]
 
-RANDOM_CASES = 200
-PARALLEL = 1e-9  # as a sine: far above rounding, far below any corner
+LEAST_SINE = 1e-9  # between lines that are not parallel: far above rounding, far below any corner
 LEAST_BEND = np.radians(5)  # of lines that do meet: their corner is then known to many digits
-COORDINATES = 1e-7  # m: a corner of lines that bend by five degrees loses two digits
-COSTS = 1e-6  # of costs and margins
+CORNER_TOLERANCE = 1e-7  # m: a corner of lines that bend by five degrees loses two digits
+MARGIN_TOLERANCE = 1e-6
 
 
 def meet_in(a: Pair, b: Pair) -> Floats | None:
@@ -38,7 +38,7 @@ def meet_in(a: Pair, b: Pair) -> Floats | None:
     """
     (angle_a, d_a), (angle_b, d_b) = a, b
     bend = np.sin(angle_b - angle_a)
-    if abs(bend) < PARALLEL:
+    if abs(bend) < LEAST_SINE:
         return None
     x = d_a * np.sin(angle_b) - d_b * np.sin(angle_a)
     y = d_b * np.cos(angle_a) - d_a * np.cos(angle_b)
@@ -69,41 +69,35 @@ def _chosen(costs: Floats) -> tuple[int, float]:
 # --- where two lines meet ----------------------------------------------------------------------------------------
 
 
-def _line_cases(rng: np.random.Generator) -> Iterator[tuple[Pair, Pair]]:
+def _line_cases(rng: np.random.Generator) -> Iterator[Args]:
     """Yield plain pairs and parallel ones, then random ones; every eighth of those is parallel."""
     yield (0.0, 0.2), (np.pi / 2, 0.1)
     yield (0.0, 0.2), (np.pi / 4, 0.0)
     yield (0.3, 0.2), (0.3, 0.1)  # parallel
     yield (0.0, 0.2), (np.pi, 0.2)  # parallel, with opposite normals
-    n = 0
-    while n < RANDOM_CASES:
+
+    def draw(n: int) -> Args | None:
         angle, other = rng.uniform(-np.pi, np.pi, 2).tolist()
         d, e = rng.uniform(-0.5, 0.5, 2).tolist()
         if n % 8 == 0:
-            n += 1
-            yield (angle, d), (angle + np.pi * float(rng.integers(2)), e)
-        elif abs(np.sin(other - angle)) > np.sin(LEAST_BEND):
-            n += 1
-            yield (angle, d), (other, e)
+            return (angle, d), (angle + np.pi * float(rng.integers(2)), e)
+        return ((angle, d), (other, e)) if abs(np.sin(other - angle)) > np.sin(LEAST_BEND) else None
+
+    yield from random_cases(draw)
 
 
-def _judge_corner(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
+def _judge_corner(got: Any, expected: Any, args: Args) -> str | None:
     """Judge a corner, or None for parallel lines."""
     if expected is None:
         return None if got is None else f"got {shown(got)}, expected None, because the lines are parallel"
     if got is None:
-        return f"got None (is there a return?), expected the corner {shown(expected)}"
-    return array("m", COORDINATES)(got, expected, args)
+        return f"got None{no_return(got)}, expected the corner {shown(expected)}"
+    return array("m", CORNER_TOLERANCE)(got, expected, args)
 
 
 def _with(change: Callable[[Pair], Pair], sign: float = 1.0) -> Callable[[Pair, Pair], Floats | None]:
     """Return the corner of lines that were read in another way."""
-
-    def corner(a: Pair, b: Pair) -> Floats | None:
-        found = meet_in(change(a), change(b))
-        return None if found is None else sign * found
-
-    return corner
+    return lambda a, b: None if (found := meet_in(change(a), change(b))) is None else sign * found
 
 
 def _parallel_alone(cases: list[Case]) -> bool:
@@ -146,38 +140,33 @@ meet = Check(
 # --- sides and centre of a polygon --------------------------------------------------------------------------------
 
 
-def _corner_cases(rng: np.random.Generator) -> Iterator[tuple[Floats]]:
+def _corner_cases(rng: np.random.Generator) -> Iterator[Args]:
     """Yield a square, a triangle, one given clockwise, one far off; then random convex ones, every third clockwise."""
-    square, triangle = (
-        np.array([(0.0, 0.0), (0.2, 0.0), (0.2, 0.1), (0.0, 0.1)]),
-        np.array([(0, 0), (0.3, 0), (0, 0.3)]),
-    )
+    square = np.array([(0.0, 0.0), (0.2, 0.0), (0.2, 0.1), (0.0, 0.1)])
+    triangle = np.array([(0, 0), (0.3, 0), (0, 0.3)])
     house = np.array([(0.0, 0.0), (0.2, 0.0), (0.2, 0.1), (0.1, 0.15), (0.0, 0.1)])
     yield from ((square,), (house,), (triangle,), (house[::-1].copy(),), (house + np.array([3.0, -2.0]),))
-    n = 0
-    while n < RANDOM_CASES:
+
+    def draw(n: int) -> Args | None:
         k = int(rng.integers(3, 6))
         bearing = np.sort(rng.uniform(0, 2 * np.pi, k))
         if np.diff(bearing, append=bearing[0] + 2 * np.pi).max() > 0.95 * np.pi or np.diff(bearing).min() < 0.2:
-            continue
-        ring = rng.uniform(-0.4, 0.4, 2) + rng.uniform(0.05, 0.1) * np.column_stack([np.cos(bearing), np.sin(bearing)])
-        n += 1
-        yield (ring[::-1].copy() if n % 3 == 0 else ring,)
+            return None
+        ring = around(rng.uniform(-0.4, 0.4, 2), rng.uniform(0.05, 0.1), bearing)
+        return (ring[::-1].copy() if n % 3 == 2 else ring,)
+
+    yield from random_cases(draw)
 
 
-def _judge_measured(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
+def _judge_measured(got: Any, expected: Any, args: Args) -> str | None:
     """Judge the lengths of the sides, then the centre."""
     if not isinstance(got, (tuple, list)) or len(got) != 2:
-        return f"got {shown(got)}, expected two things: the sides and the centre{_missing(got)}"
+        return f"got {shown(got)}, expected two things: the sides and the centre{no_return(got)}"
     for name, mine, wanted in zip(("sides", "centre"), got, expected, strict=True):
         off = array("m")(mine, wanted, args)
         if off is not None:
             return f"{name}: {off}"
     return None
-
-
-def _missing(got: Any) -> str:
-    return " (is there a return?)" if got is None else ""
 
 
 def _centred(centre: Callable[[Floats], Floats]) -> Callable[[Floats], tuple[Floats, Floats]]:
@@ -198,15 +187,7 @@ def _of_extents(corners: Floats) -> Floats:
 def _unsigned(corners: Floats) -> Floats:
     """Return the centre with the area's sign forgotten: from the origin the wrong way when clockwise."""
     (x, y), (u, v) = corners.T, np.roll(corners, -1, axis=0).T
-    weight = x * v - u * y
-    return np.array([(x + u) @ weight, (y + v) @ weight]) / (3 * abs(weight.sum()))
-
-
-def _half(corners: Floats) -> Floats:
-    """Return the centre divided by 6 times the sum, and not by 6 times the area, which is half the sum."""
-    (x, y), (u, v) = corners.T, np.roll(corners, -1, axis=0).T
-    weight = x * v - u * y
-    return np.array([(x + u) @ weight, (y + v) @ weight]) / (6 * weight.sum())
+    return measured(corners)[1] * np.sign((x * v - u * y).sum())
 
 
 def _one_side_short(cases: list[Case]) -> bool:
@@ -251,7 +232,7 @@ sides_and_centroid = Check(
         ),
         Fault(
             "The sides are right. The centre is halved: A is half of the sum of the cross products.",
-            like=_centred(_half),
+            like=_centred(lambda corners: measured(corners)[1] / 2),
         ),
     ),
 )
@@ -260,44 +241,39 @@ sides_and_centroid = Check(
 # --- a fair choice ------------------------------------------------------------------------------------------------
 
 
-def _choice_cases(rng: np.random.Generator) -> Iterator[tuple[Floats, NDArray[np.int64], int, float]]:
+def _choice_cases(rng: np.random.Generator) -> Iterator[Args]:
     """Yield a circle against a pentagon, one candidate alone, one that cannot be fitted; then random ones."""
     yield np.array([1.0e-4, 0.8e-4]), np.array([3, 10]), 100, 0.001
     yield np.array([4.0e-4, 0.8e-4]), np.array([3, 10]), 100, 0.001
     yield np.array([1.0e-4]), np.array([3]), 100, 0.001
     yield np.array([2.0e-4, np.inf, 1.0e-4, 0.9e-4]), np.array([3, 6, 5, 10]), 120, 0.001
-    n = 0
-    while n < RANDOM_CASES:
+
+    def draw(_n: int) -> Args | None:
         n_points, spread = int(rng.integers(20, 500)), float(rng.uniform(0.0004, 0.01))
         numbers = rng.permutation([3, 6, 5, 10])[: int(rng.integers(2, 5))]
-        misfit = (
-            n_points * rng.uniform(0.9, 1.1) + np.sort(rng.uniform(0, 60, len(numbers)))[np.argsort(-numbers).argsort()]
-        )
+        least = n_points * rng.uniform(0.9, 1.1)
+        misfit = least + np.sort(rng.uniform(0, 60, len(numbers)))[np.argsort(-numbers).argsort()]
         costs = misfit + numbers * np.log(n_points)
-        if np.diff(np.sort(costs)).min() > 0.01:
-            n += 1
-            yield misfit * spread**2, numbers, n_points, spread
+        clear = np.diff(np.sort(costs)).min() > 0.01
+        return (misfit * spread**2, numbers, n_points, spread) if clear else None
+
+    yield from random_cases(draw)
 
 
-def _judge_choice(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
+def _judge_choice(got: Any, expected: Any, args: Args) -> str | None:
     """Judge which candidate was chosen, then the margin."""
     if not isinstance(got, (tuple, list)) or len(got) != 2:
-        return f"got {shown(got)}, expected two things: the number of the best candidate and its margin{_missing(got)}"
+        return f"got {shown(got)}, expected two things: the number of the best candidate and its margin{no_return(got)}"
     off = number()(got[0], expected[0], args)
     if off is not None:
         return f"best: {off}"
-    off = number("", COSTS)(got[1], expected[1], args)
+    off = number("", MARGIN_TOLERANCE)(got[1], expected[1], args)
     return None if off is None else f"the best is right, its margin is not: {off}"
 
 
 def _priced(cost: Callable[[Floats, Any, int, float], Floats]) -> Callable[..., tuple[int, float]]:
     """Return the choice by another cost."""
     return lambda squares, numbers, n_points, spread: _chosen(cost(squares, numbers, n_points, spread))
-
-
-def _margin_turned(squares: Floats, numbers: Any, n_points: int, spread: float) -> tuple[int, float]:
-    best, margin = cheapest(squares, numbers, n_points, spread)
-    return best, -margin
 
 
 def _margin_to_last(squares: Floats, numbers: Any, n_points: int, spread: float) -> tuple[int, float]:
@@ -339,7 +315,10 @@ fair_choice = Check(
             "ln is the natural logarithm: np.log, not np.log10.",
             like=_priced(lambda squares, numbers, n_points, spread: squares / spread**2 + numbers * np.log10(n_points)),
         ),
-        Fault("The choice is right. The margin has the wrong sign: the rival costs more.", like=_margin_turned),
+        Fault(
+            "The choice is right. The margin has the wrong sign: the rival costs more.",
+            like=lambda *args: (cheapest(*args)[0], -cheapest(*args)[1]),
+        ),
         Fault(
             "The choice is right. The margin is measured to the worst candidate, not to the next best.",
             like=_margin_to_last,

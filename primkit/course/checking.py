@@ -19,6 +19,7 @@ from pathlib import Path
 
 from .course import CONFIG, COPIED, Course
 from .handed_in import strangers
+from .moved import old_names
 
 OLDEST = (3, 11)
 ENVIRONMENT = Path(__file__).resolve().parents[2] / "environment.txt"  # in a clone
@@ -54,6 +55,7 @@ def check(course: Course, environment: Path = ENVIRONMENT) -> list[Finding]:
         _kernel,
         lambda: _folder(course),
         lambda: _sources(course),
+        lambda: (Finding(old.file, f"names {old.name}, which has moved", old.mend) for old in old_names(course)),
         lambda: _secrets(course),
         lambda: _gradebook(course),
     )

@@ -19,6 +19,7 @@ from typing import Any
 from .course import STEPS, Course
 from .handed_in import Fault, file_faults, strangers, tree_hash
 from .handing_back import hand_back, waiting
+from .moved import refuse_old_names
 from .running import nbgrader
 
 JOURNAL = "graded.json"
@@ -51,6 +52,7 @@ def grade(
         raise ValueError(f"nothing was handed in: put notebooks into submitted/<student>/{name}/ in {course.root}")
     if not (course.root / "release" / name).is_dir():
         raise ValueError(f"{name} was not released: run `primkit teach release {name}` first, for nbgrader needs it")
+    refuse_old_names(course, name)
     folders = [course.root / "submitted" / student / name for student in everybody]
     before, start = tree_hash(*folders), time.monotonic()
     journal = Journal(course, name)

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from ..formats import save_scans
 from .course import SCANS, STUDENTS, Course
 from .leaks import find_leaks, secrets_of
+from .moved import refuse_old_names
 from .personal import personal_scans, personal_world
 from .running import Done, nbgrader
 
@@ -22,8 +23,9 @@ def release(course: Course, name: str, *, say: Callable[[str], None]) -> None:
     Raises
     ------
     ValueError
-        If nbgrader refuses the problem set, or a solution is found in what it made.
+        If the course names what has moved, nbgrader refuses the problem set, or a solution is found in what it made.
     """
+    refuse_old_names(course, name, released=False)
     students = course.students()
     if students:
         _check(nbgrader(course, "db", "student", "import", STUDENTS), "the list of students was refused")

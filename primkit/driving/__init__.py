@@ -1,7 +1,8 @@
-"""Explorer: the robot finds its own way, to see all of the board with few scans.
+"""Driving: the robot on its own, and a world that changes.
 
-Beside the story: automatic movement without way-points. The robot keeps a map of its own, of what it has seen to be
-free, and asks it where the next scan would show most for the time that it takes to get there.
+``explore`` needs no way-points: the robot keeps a map of what it has seen to be free, and drives to where the next scan
+shows most for its time. ``scripted`` and ``wander`` make drives for boards that nobody drove on; ``moving_grid``
+follows things that move.
 
 In:  a ``World`` to look at and to drive in, a ``Lidar``.
 Out: ``Exploration``: where the robot scanned, what it saw and found, how it drove, and why it stopped.
@@ -10,20 +11,8 @@ Out: ``Exploration``: where the robot scanned, what it saw and found, how it dro
 >>> tour = explore(random_world(4, rng=7), rng=0)
 >>> [one.kind for one in tour.found], tour.why
 (['pentagon', 'rectangle', 'pentagon', 'rectangle'], 'all is seen')
->>> tour.n_scans < 77 / 2
+>>> tour.n_scans < 77 / 2  # of the way-points that the paper's robot is put on
 True
-
-The rooms, each of which imports only those before it:
-
-=============  ==========================================================
-``seen.py``    the robot's own map: free, wall, unseen
-``ways.py``    the shortest way through what is free, and the wheels for it
-``views.py``   what a scan from each place would show
-``search.py``  look, think, drive, until nothing is left to see
-=============  ==========================================================
-
-Sources: Yamauchi (1997), "A frontier-based approach for autonomous exploration"; Connolly (1985), "The determination of
-next best views".
 """
 
 from .explore import Exploration, explore

@@ -1,12 +1,16 @@
-"""Search: look, think, drive, until there is nothing left to see.
+"""Explore: scan, choose the next view, drive there, until there is nothing left to see.
 
 In:  a ``World`` to look at and to drive in, a ``Lidar``.
-Out: ``Exploration``: where the robot scanned, what it saw and found, how it drove, and why it stopped.
+Out: ``Exploration``.
 
 >>> from primkit.shapes import Circle
 >>> tour = explore(World([Circle((0.2, 0.1), 0.06)]), rng=0)
 >>> [one.kind for one in tour.found], tour.why
 (['circle'], 'all is seen')
+
+Not here: what is free (``seen_map``), the shortest ways (``ways``), what a scan would show (``next_views``).
+
+Source: Yamauchi (1997), "A frontier-based approach for autonomous exploration".
 """
 
 from __future__ import annotations
@@ -31,10 +35,10 @@ from .ways import Ways, forward, ways_from, wheels_along
 Why = Literal["all is seen", "the rest cannot be seen", "out of scans"]
 
 MOST_SCANS = 60
-LITTLE = 40.0  # squares: when the best view shows less, it is time to ask what the points so far are
+LITTLE_GAIN = 40.0  # squares: where the best view shows less, it is time to ask what the points so far are
 OUTLINE_WORTH = 10.0  # squares of unseen board that a square of open outline is worth: it is little, and decides much
-TRIES = 2  # so often a square is looked at in vain, then it is given up
-BACK = 0.02  # m: so far the robot backs off from what it touched
+MOST_LOOKS = 2  # in vain at a square; then it is given up
+BACK_OFF = 0.02  # m: from what the robot touched
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +128,7 @@ def explore(
     while why is None:
         tour.look()
         why = "out of scans" if len(tour.scans) == most_scans else tour.move_on()
-    return tour.told(why)
+    return tour.result(why)
 
 
 class _Tour:
@@ -167,7 +171,7 @@ class _Tour:
     def view(self, ways: Ways) -> View | None:
         """Return the best next view; when the map alone has little to offer, in the light of what was found."""
         view = next_view(self.worth(), self.opaque(), ways, self.lidar, self.been)
-        if (view is None or view.gain < LITTLE) and self.find():
+        if (view is None or view.gain < LITTLE_GAIN) and self.find():
             view = next_view(self.worth(), self.opaque(), ways, self.lidar, self.been)
         return view
 
@@ -186,7 +190,7 @@ class _Tour:
         open_ = np.zeros(self.vain.shape, dtype=bool)
         open_[self.board.index(open_outlines(self.found))] = True
         worth = 1.0 * self.board.hiding_places(self.explained) + OUTLINE_WORTH * open_
-        return worth * (self.vain < TRIES) if give_up else worth
+        return worth * (self.vain < MOST_LOOKS) if give_up else worth
 
     def opaque(self) -> Bools:
         """Tell at which squares a beam ends, shape (N, N)."""
@@ -199,7 +203,7 @@ class _Tour:
                 heading = self.path[-1][2]
                 ahead = (BODY + SQUARE / 2) * np.array([np.cos(heading), np.sin(heading)])
                 self.board.bump(self.path[-1][:2] + ahead)
-                for back in -forward(BACK):
+                for back in -forward(BACK_OFF):
                     self.turn_wheels(back)
                 break
 
@@ -210,7 +214,7 @@ class _Tour:
         self.wheels.append(speeds)
         return stopped
 
-    def told(self, why: Why) -> Exploration:
+    def result(self, why: Why) -> Exploration:
         """Return the exploration, with the shapes in all that was seen."""
         self.find()
         poses = np.vstack([one.poses for one in self.scans])

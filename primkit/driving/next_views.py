@@ -1,12 +1,12 @@
-"""Views: what the next scan would show, from each square that the robot can reach.
+"""Next views: what a scan would show, from each square that the robot can reach.
 
-In:  a ``SeenMap``, the shapes found so far, the ``Ways`` from where the robot stands.
+In:  what each square is worth to be seen and where beams end, both (N, N); the ``Ways`` from where the robot stands.
 Out: ``next_view``: the square to scan from next, or ``None`` when no reachable one would show anything new.
 
 A beam through the map goes on through what is free or unseen, and ends at a wall or a shape: what it meets on its way
-is what a scan would show. Unseen squares count by their area; a piece of outline that is still open counts
-for more, because it is little and decides much. The best view is the one with the most to see for the time
-that it takes to get there.
+is what a scan would show. The best view has the greatest
+
+    gain / (time + SCAN_TIME),   gain: worth of all squares that the beams meet; time: of the way there [s].
 
 Source: Connolly (1985), "The determination of next best views"; the weighing of gain and way follows
 Gonzalez-Banos and Latombe (2002), "Navigation strategies for exploring indoor environments".
@@ -22,12 +22,12 @@ from numpy.typing import NDArray
 from ..arguments import Bools, Floats
 from ..lidar import Lidar
 from .seen_map import SQUARE
-from .ways import SPEED, Ways
+from .ways import DRIVE_SPEED, Ways
 
-EVERY = 4  # views lie on every fourth square, both ways
-SPARSE = 2  # every second beam is followed: it tells nearly as much
-STANDING = 1.5  # s: a scan with its way is reckoned to take so much at least: few large gains, not many small ones
-HALF = SQUARE / np.sqrt(2)  # m: from a square's centre to its corner
+VIEW_SPACING = 4  # squares from one view to the next, both ways
+BEAM_STRIDE = 2  # every second beam is followed: it tells nearly as much
+SCAN_TIME = 1.5  # s that a scan costs beside its way: few large gains, not many small ones
+HALF_DIAGONAL = SQUARE / np.sqrt(2)  # m
 LEAST_GAIN = 0.5  # squares: a view that shows less shows nothing
 
 
@@ -67,13 +67,13 @@ def next_view(worth: Floats, opaque: Bools, ways: Ways, lidar: Lidar, been: Bool
         Squares that it has scanned from: a second scan shows the same.
     """
     lattice = np.zeros(ways.fits.shape, dtype=bool)
-    lattice[EVERY // 2 :: EVERY, EVERY // 2 :: EVERY] = True
-    squares = np.argwhere(lattice & np.isfinite(ways.length) & (ways.room >= lidar.range_min + HALF) & ~been)
+    lattice[VIEW_SPACING // 2 :: VIEW_SPACING, VIEW_SPACING // 2 :: VIEW_SPACING] = True
+    squares = np.argwhere(lattice & np.isfinite(ways.length) & (ways.room >= lidar.range_min + HALF_DIAGONAL) & ~been)
     if len(squares) == 0:
         return None
     gains = _shown(squares, worth, opaque, lidar)[0].sum(axis=(1, 2))
-    times = ways.length[squares[:, 0], squares[:, 1]] / SPEED
-    best = int(np.argmax(gains / (times + STANDING)))
+    times = ways.length[squares[:, 0], squares[:, 1]] / DRIVE_SPEED
+    best = int(np.argmax(gains / (times + SCAN_TIME)))
     if gains[best] < LEAST_GAIN:
         return None
     return View((int(squares[best, 0]), int(squares[best, 1])), float(gains[best]))
@@ -102,7 +102,7 @@ def _shown(
         Squares around the map: beams may leave the board, and nothing is shown there.
     """
     steps = np.arange(lidar.range_min, lidar.range_max, SQUARE) + SQUARE / 2
-    bearings = lidar.angles[::SPARSE]
+    bearings = lidar.angles[::BEAM_STRIDE]
     i, j = np.rint(np.stack([np.cos(bearings), np.sin(bearings)])[:, :, None] * steps / SQUARE).astype(np.int64)
     rim = int(steps[-1] / SQUARE) + 1
     width = len(worth) + 2 * rim
@@ -111,5 +111,5 @@ def _shown(
     stops = np.pad(opaque, rim).ravel()[numbers]
     reached = np.ones_like(stops)  # a beam shows the wall that it ends at
     np.logical_not(np.logical_or.accumulate(stops[:, :, :-1], axis=2), out=reached[:, :, 1:])
-    area = np.minimum(SPARSE * steps * lidar.angle_increment / SQUARE, 1.0)
+    area = np.minimum(BEAM_STRIDE * steps * lidar.angle_increment / SQUARE, 1.0)
     return np.pad(worth, rim).ravel()[numbers] * reached * area, numbers, rim

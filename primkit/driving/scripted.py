@@ -1,4 +1,4 @@
-"""Scripted: a driver for drives that nobody drove; it goes from shape to shape and around each, not too well.
+"""Scripted: drives that nobody drove; from shape to shape and around each, as unevenly as by hand.
 
 In:  a ``World`` that the driver looks at from above, as somebody beside the board does, and a seed.
 Out: a ``Route``: where the robot starts, and the speeds of its wheels.
@@ -10,10 +10,9 @@ Out: a ``Route``: where the robot starts, and the speeds of its wheels.
 >>> bool(world.shapes[0].signed_distance(poses[:, :2]).min() > 0.037), bool(len(poses) > 60)
 (True, True)
 
-The driver plans by eye and steers by hand. It takes the nearest shape that is left, goes around it at a distance that
-wobbles, now and then leaves a part of it out, and does not get to where the robot has no room. Five times a second it
-looks where the robot is and sets the wheels for a place a little ahead on the way, never quite as it should. It knows
-neither scans nor map: whether everything was seen, it cannot tell.
+The driver takes the nearest shape that is left, goes around it at a distance that sways, sometimes leaves a part of it
+out, and does not get to where the robot has no room. Five times a second it sets the wheels for a place a little ahead
+on the way, with an error that lasts. It knows neither scans nor map: whether everything was seen, it cannot tell.
 """
 
 from __future__ import annotations
@@ -27,31 +26,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import Floats, as_count, as_rng, check_type
-from ..formats import SUITE_SEED, Route, paper_suite, scripted_drives
+from ..formats import Route, paper_suite, scripted_drives
 from ..robot import AXLE, FASTEST, PERIOD, WHEEL, advance, clearance, moved, start_pose
 from ..shapes import Shape
 from ..world import World
+from .ways import tighten, trace
 
-# What the driver wants.
-DISTANCE = (0.09, 0.13)  # m from an outline to the robot's middle; the LiDAR measures from 0.05 to 0.3 m
-WOBBLE = 0.015  # m: how far the distance sways either way
-KEEP = 0.012  # m: the way keeps the body at least this far from everything
-CLOSE = 0.005  # m: nearer than this the driver does not go on towards anything
-BEARINGS = 60  # places around a shape
-LEFT_OUT = 0.4  # how often a part of a shape is left out
-PART = (0.3, 0.9)  # how much of the way around it that is
-# How it steers.
-SPEED = (4.8, 5.8)  # rad/s: of both wheels when it goes straight
-AHEAD = 0.05  # m: it looks at a place so far ahead on the way
-EAGER = 3.0  # 1/s: how fast it turns towards that place
-HOLD = 2  # periods from one look to the next
-SLOPPY = 0.25  # rad: standard deviation of its steering, which lasts for a while:
-LASTING = 0.8  # of its error, so much is left at the next look
-# How it plans.
-CELL = 0.01  # m: grid of the places that a way between two shapes may lead over
-MESH = 0.005  # m: places of a way that are looked at, and along the rays that search for a place beside a shape
-FAR = 0.6  # m: longest of these rays
-LONGEST = 20_000  # periods: half an hour; a drive that is not over by then never is
+# The plan.
+RING_DISTANCE = (0.09, 0.13)  # m from an outline to the robot's middle; the LiDAR measures from 0.05 to 0.3 m
+RING_SWAY = 0.015  # m: how far the distance sways either way
+RING_PLACES = 60  # around a shape
+LEFT_OUT_RATE = 0.4  # of the shapes: a part is left out
+LEFT_OUT_SHARE = (0.3, 0.9)  # of the way around the shape: how large that part is
+LONGEST_RAY = 0.6  # m from a shape's centre: places of the ring are searched along rays
+WAY_CLEARANCE = 0.012  # m from the body to everything, along the planned way
+WAY_GRID = 0.01  # m between the places that a way between two shapes may lead over
+WAY_STEP = 0.005  # m between the places of a way or a ray that are looked at
+# The steering.
+WHEEL_SPEED = (4.8, 5.8)  # rad/s, of both wheels, straight on
+LOOK_AHEAD = 0.05  # m along the way, to the place that is steered for
+TURN_GAIN = 3.0  # 1/s: turn for each radian off
+PERIODS_HELD = 2  # from one look to the next
+STEERING_STD = 0.25  # rad
+STEERING_MEMORY = 0.8  # share of the steering's error that is left at the next look
+LEAST_CLEARANCE = 0.005  # m: nearer to anything the robot turns on the spot
+MOST_PERIODS = 20_000  # half an hour: a drive that is not over by then never is
 
 
 def scripted_route(world: World, *, rng: int | np.random.Generator | None = None) -> Route:
@@ -87,24 +86,6 @@ def scripted_route(world: World, *, rng: int | np.random.Generator | None = None
     return Route(start, _steered(world, start, _tour(world, start[:2], generator), generator))
 
 
-def make_scripted_drive(name: str) -> Route:
-    """Return the bundled drive on one of the suite's maps, steered anew from its seed.
-
-    As its file in ``data/drives`` has it: ``save_route`` writes the same bytes.
-
-    Examples
-    --------
-    >>> from primkit.formats import scripted_drives
-    >>> bool((make_scripted_drive("1-circle").wheels == scripted_drives()["1-circle"].wheels).all())
-    True
-    """
-    suite = paper_suite()
-    if name not in suite:
-        raise ValueError(f"name must be one of the suite's maps, {', '.join(suite)}, got {name!r}")
-    # The number of the map, as for the map itself, and one more: no draw of the drive is one of the map.
-    return scripted_route(suite[name], rng=np.random.default_rng([SUITE_SEED, list(suite).index(name) + 1, 1]))
-
-
 def drives_on(worlds: Mapping[str, World], *, seed: int = 0) -> dict[str, Floats]:
     """Return the poses of a scripted drive on each map, by name, for ``run_study(worlds, drives=...)``.
 
@@ -121,15 +102,12 @@ def drives_on(worlds: Mapping[str, World], *, seed: int = 0) -> dict[str, Floats
     {'empty': (1, 3)}
     """
     suite, bundled, seed = paper_suite(), scripted_drives(), as_count(seed, "seed", least=0)
-    routes = {
-        name: bundled[name] if suite.get(name) == world else scripted_route(world, rng=_own_rng(name, seed))
-        for name, world in worlds.items()
-    }
-    return {name: route.poses(worlds[name]) for name, route in routes.items()}
-
-
-def _own_rng(name: str, seed: int) -> np.random.Generator:
-    return np.random.default_rng([seed, crc32(name.encode())])
+    poses = {}
+    for name, world in worlds.items():
+        rng = np.random.default_rng([seed, crc32(name.encode())])
+        route = bundled[name] if suite.get(name) == world else scripted_route(world, rng=rng)
+        poses[name] = route.poses(world)
+    return poses
 
 
 # --- the plan -----------------------------------------------------------------------------------------------
@@ -145,25 +123,25 @@ def _tour(world: World, start: Floats, rng: np.random.Generator) -> Floats:
         nearest = int(np.argmin([gap.min() for gap in gaps]))
         for place in _in_order(rings.pop(nearest), gaps[nearest], rng):
             way += board.way(way[-1], place)
-    return _evenly(np.array(way), MESH)
+    return _evenly(np.array(way), WAY_STEP)
 
 
 def _ring(world: World, shape: Shape, rng: np.random.Generator) -> Floats:
-    """Return places around a shape, shape (BEARINGS, 2); NaN where there is no room, or a part is left out."""
-    turns = np.linspace(0, 2 * np.pi, BEARINGS, endpoint=False)
+    """Return places around a shape, shape (RING_PLACES, 2); NaN where there is no room, or a part is left out."""
+    turns = np.linspace(0, 2 * np.pi, RING_PLACES, endpoint=False)
     phases, waves = rng.uniform(0, 2 * np.pi, 2), np.array([2, 3])
     sway = np.sin(np.outer(turns, waves) + phases).mean(axis=1)
-    wanted = rng.uniform(*DISTANCE) + WOBBLE * sway
-    reach = np.arange(0, FAR, MESH)
+    wanted = rng.uniform(*RING_DISTANCE) + RING_SWAY * sway
+    reach = np.arange(0, LONGEST_RAY, WAY_STEP)
     rays = shape.centroid + reach[:, None] * np.column_stack([np.cos(turns), np.sin(turns)])[:, None]  # (K, R, 2)
     away = shape.signed_distance(rays.reshape(-1, 2)).reshape(rays.shape[:2])
-    free = clearance(world, rays.reshape(-1, 2)).reshape(away.shape) >= KEEP
+    free = clearance(world, rays.reshape(-1, 2)).reshape(away.shape) >= WAY_CLEARANCE
     suits = free & (away <= wanted[:, None])
     outermost = len(reach) - 1 - suits[:, ::-1].argmax(axis=1)
-    ring: Floats = np.where(suits.any(axis=1)[:, None], rays[np.arange(BEARINGS), outermost], np.nan)
-    if rng.random() < LEFT_OUT:
-        first, part = rng.integers(BEARINGS), rng.uniform(*PART)
-        ring[(first + np.arange(int(part * BEARINGS))) % BEARINGS] = np.nan
+    ring: Floats = np.where(suits.any(axis=1)[:, None], rays[np.arange(RING_PLACES), outermost], np.nan)
+    if rng.random() < LEFT_OUT_RATE:
+        first, part = rng.integers(RING_PLACES), rng.uniform(*LEFT_OUT_SHARE)
+        ring[(first + np.arange(int(part * RING_PLACES))) % RING_PLACES] = np.nan
     return ring
 
 
@@ -208,11 +186,11 @@ class _Board:
         from scipy.sparse import coo_array
         from scipy.spatial import cKDTree
 
-        half = np.floor(world.size / 2 / CELL)
-        lines = np.arange(-half, half + 1) * CELL
+        half = np.floor(world.size / 2 / WAY_GRID)
+        lines = np.arange(-half, half + 1) * WAY_GRID
         places = np.stack(np.meshgrid(lines, lines, indexing="ij"), axis=-1).reshape(-1, 2)
-        places = places[clearance(world, places) >= KEEP]
-        pairs = cKDTree(places).query_pairs(1.5 * CELL, output_type="ndarray")
+        places = places[clearance(world, places) >= WAY_CLEARANCE]
+        pairs = cKDTree(places).query_pairs(1.5 * WAY_GRID, output_type="ndarray")
         lengths = np.hypot(*(places[pairs[:, 0]] - places[pairs[:, 1]]).T)
         return cls(world, places, coo_array((lengths, pairs.T), shape=(len(places), len(places))).tocsr())
 
@@ -224,25 +202,13 @@ class _Board:
             return [end]
         first, last = (int(np.hypot(*(self.places - place).T).argmin()) for place in (start, end))
         _, before = dijkstra(self.steps, directed=False, indices=first, return_predecessors=True)
-        nodes = [last]
-        while nodes[-1] != first:
-            if before[nodes[-1]] < 0:
-                return []
-            nodes.append(int(before[nodes[-1]]))
-        return self._tight([start, *self.places[nodes[::-1]], end])
-
-    def _tight(self, way: list[Floats]) -> list[Floats]:
-        """Return the places after the first, without those that can be left out: from each, the last one in sight."""
-        kept, here = [], 0
-        while here < len(way) - 1:
-            seen = [k for k in range(here + 1, len(way)) if self.sees(way[here], way[k])]
-            here = max([here + 1, *seen])
-            kept.append(way[here])
-        return kept
+        nodes = trace(before, last)
+        return list(tighten(np.array([start, *self.places[nodes], end]), self.sees)) if nodes[0] == first else []
 
     def sees(self, start: Floats, end: Floats) -> bool:
         """Tell whether the straight way between two places is free."""
-        return bool((clearance(self.world, _evenly(np.array([start, end]), MESH)) >= KEEP - MESH / 2).all())
+        places = _evenly(np.array([start, end]), WAY_STEP)
+        return bool((clearance(self.world, places) >= WAY_CLEARANCE - WAY_STEP / 2).all())
 
 
 def _evenly(way: Floats, step: float) -> Floats:
@@ -260,14 +226,14 @@ def _steered(world: World, start: Floats, way: Floats, rng: np.random.Generator)
     """Return the wheel speeds that bring the robot along a way, shape (T, 2)."""
     pose, here, slip = start, 0, 0.0
     wheels: list[tuple[float, float]] = []
-    ahead = round(AHEAD / MESH)
-    speed = WHEEL * rng.uniform(*SPEED)
-    while here < len(way) - 1 and len(wheels) < LONGEST:
+    ahead = round(LOOK_AHEAD / WAY_STEP)
+    speed = WHEEL * rng.uniform(*WHEEL_SPEED)
+    while here < len(way) - 1 and len(wheels) < MOST_PERIODS:
         here = _nearest(way, here, pose, ahead)
         aim = way[min(here + ahead, len(way) - 1)]
-        slip = LASTING * slip + np.sqrt(1 - LASTING**2) * rng.normal(0, SLOPPY)
+        slip = STEERING_MEMORY * slip + np.sqrt(1 - STEERING_MEMORY**2) * rng.normal(0, STEERING_STD)
         held = _set(world, pose, aim, speed, slip)
-        for _ in range(HOLD):
+        for _ in range(PERIODS_HELD):
             pose, _ = advance(world, pose, held, PERIOD)
             wheels.append(held)
     return np.array(wheels).reshape(-1, 2)
@@ -284,13 +250,13 @@ def _set(world: World, pose: Floats, aim: Floats, speed: float, slip: float) -> 
     x, y, heading = pose
     off = float(np.arctan2(aim[1] - y, aim[0] - x) - heading + slip)
     off = (off + np.pi) % (2 * np.pi) - np.pi
-    room = min(CLOSE, float(clearance(world, pose[None, :2])[0]))
+    room = min(LEAST_CLEARANCE, float(clearance(world, pose[None, :2])[0]))
     for share in (1.0, 0.5, 0.25):
-        wheels = _wheels(share * speed * max(0.0, np.cos(off)), EAGER * off)
-        there = moved(pose, wheels, HOLD * PERIOD * np.array([0.5, 1.0]))
+        wheels = _wheels(share * speed * max(0.0, np.cos(off)), TURN_GAIN * off)
+        there = moved(pose, wheels, PERIODS_HELD * PERIOD * np.array([0.5, 1.0]))
         if clearance(world, there[:, :2]).min() >= room:
             return wheels
-    return _wheels(0.0, EAGER * off)
+    return _wheels(0.0, TURN_GAIN * off)
 
 
 def _wheels(speed: float, turn: float) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Seen: the robot's own map of the board, in squares of a centimetre: what is free, what is a wall, what is unseen.
+"""Seen map: the robot's own map of the board, in squares of a centimetre: what is free, what is a wall, what is unseen.
 
 In:  scans, one after the other; shapes that were found so far.
 Out: ``SeenMap``: ``.free``, ``.seen``, ``.wall``, each of shape (N, N), square (i, j) at the i-th x and the j-th y.
@@ -10,10 +10,10 @@ Out: ``SeenMap``: ``.free``, ``.seen``, ``.wall``, each of shape (N, N), square 
 >>> int(board.free.sum()), int(board.seen.sum())  # a first look, into the open: nobody knows what stands very near
 (2828, 44)
 
-What a beam says. Up to its hit the way is free. A beam that returns nothing saw no outline between the sensor's least
-and greatest distance; but an outline nearer than the least blocks it as well. So it counts only where the ring around
-the robot, from its body to the least distance, is known to be free. The very first look cannot know that: what it
-takes for free is driven through (carefully: a contact stops the robot), but it is looked at once more.
+Up to its hit a beam's way is free. A beam that returns nothing saw no outline between the sensor's least and greatest
+distance; but an outline nearer than the least blocks it as well. So it counts only where the ring around the robot,
+from its body to the least distance, is known to be free. The first look cannot know that: what it takes for free is
+driven through (a contact stops the robot), but not yet seen.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Wander: random drives among the shapes.
+"""Wander: random drives among the shapes, for boards without way-points.
 
 In:  a ``World``, a number of scans, a seed.
 Out: poses, shape (P, 3): x [m], y [m], heading [rad], world frame; from each to the next a period of the LiDAR passes.
@@ -21,12 +21,12 @@ from ..arguments import Floats, as_count, as_positive
 from ..world import World
 
 CLEARANCE = 0.04  # m: a little more than the robot's radius
-MARGIN = 0.10  # m: so far inside the board's edge the way stays: shapes are in the middle
-STEP = 0.0128  # m: the e-puck's way in one period at full speed, 6.28 rad/s x 0.0205 m x 0.1 s
-TURNS = np.radians(np.arange(-24, 25, 3))  # from scan to scan; far less than the e-puck can, which makes a smooth way
-WILL, WHIM = 0.8, np.radians(6)  # how much of a turn is kept in the next, and the deviation of what is added
-AHEAD = 12  # steps that must be clear
-STARTS = 1000  # spots tried for a start
+EDGE_MARGIN = 0.10  # m from the way to the board's edge: shapes are in the middle
+PERIOD_WAY = 0.0128  # m: the e-puck's way in one period at full speed, 6.28 rad/s x 0.0205 m x 0.1 s
+TURN_CHOICES = np.radians(np.arange(-24, 25, 3))  # from scan to scan; the e-puck can turn much more
+TURN_MEMORY, TURN_STD = 0.8, np.radians(6)  # share of a turn that is kept in the next; deviation of what is added
+CLEAR_STEPS = 12  # ahead
+START_SPOTS = 1000  # tried
 
 
 def wander(
@@ -64,16 +64,16 @@ def wander(
     heading = rng.uniform(0, 2 * np.pi)
     poses = [(*place, heading)]
     while len(poses) < n_poses:
-        wish = WILL * turn + rng.normal(0, WHIM)
+        wish = TURN_MEMORY * turn + rng.normal(0, TURN_STD)
         turn, goes = _turn(world, place, heading, wish, clearance)
         heading += turn
-        place = place + goes * STEP * np.array([np.cos(heading), np.sin(heading)])
+        place = place + goes * PERIOD_WAY * np.array([np.cos(heading), np.sin(heading)])
         poses.append((*place, heading))
     return np.array(poses)
 
 
 def _start(world: World, clearance: float, rng: np.random.Generator) -> Floats:
-    spots = rng.uniform(-0.5, 0.5, (STARTS, 2)) * (world.size - 2 * MARGIN)
+    spots = rng.uniform(-0.5, 0.5, (START_SPOTS, 2)) * (world.size - 2 * EDGE_MARGIN)
     free = np.flatnonzero(_clear(world, spots, clearance))
     if len(free) == 0:
         raise ValueError(f"clearance must leave room for a drive, got {clearance:g} m on a board of {world.size:g} m")
@@ -85,18 +85,20 @@ def _turn(world: World, place: Floats, heading: float, wish: float, clearance: f
 
     A way is looked at as if the turn were kept up; where none is clear to its end, the longest clear one is taken.
     """
-    bearings = heading + TURNS[:, None] * np.arange(1, AHEAD + 1)
-    ways = place + STEP * np.cumsum(np.stack([np.cos(bearings), np.sin(bearings)], axis=-1), axis=1)  # (T, AHEAD, 2)
+    bearings = heading + TURN_CHOICES[:, None] * np.arange(1, CLEAR_STEPS + 1)
+    ways = place + PERIOD_WAY * np.cumsum(
+        np.stack([np.cos(bearings), np.sin(bearings)], axis=-1), axis=1
+    )  # (T, CLEAR_STEPS, 2)
     clear = _clear(world, ways.reshape(-1, 2), clearance).reshape(bearings.shape)
-    length = np.where(clear.all(axis=1), AHEAD, clear.argmin(axis=1))
+    length = np.where(clear.all(axis=1), CLEAR_STEPS, clear.argmin(axis=1))
     best = np.flatnonzero(length == length.max())
-    chosen = best[np.abs(TURNS[best] - wish).argmin()]
-    return float(TURNS[chosen]), bool(length[chosen] > 0)
+    chosen = best[np.abs(TURN_CHOICES[best] - wish).argmin()]
+    return float(TURN_CHOICES[chosen]), bool(length[chosen] > 0)
 
 
 def _clear(world: World, spots: Floats, clearance: float) -> NDArray[np.bool_]:
     """Tell which spots are well on the board and that far from every outline, shape (N,)."""
-    clear: NDArray[np.bool_] = np.all(np.abs(spots) <= world.size / 2 - MARGIN, axis=1)
+    clear: NDArray[np.bool_] = np.all(np.abs(spots) <= world.size / 2 - EDGE_MARGIN, axis=1)
     for shape in world.shapes:
         clear &= shape.signed_distance(spots) >= clearance
     return clear

@@ -1,7 +1,8 @@
 """Ways: through what the robot has seen to be free, from where it stands to anywhere else, and the wheels for it.
 
 In:  a ``SeenMap``, a place.
-Out: which squares the body fits on; how far each is; the corners of the shortest way; wheel speeds, shape (T, 2).
+Out: ``Ways``: which squares the body fits on, how far each is, the corners of the shortest way; and the wheel speeds
+     along them, shape (T, 2), rad/s.
 
 >>> wheels = wheels_along(np.zeros(3), np.array([(0.0, 0.1)]))  # a quarter turn to the left, then ten centimetres
 >>> wheels.round(2).tolist()[0], wheels.round(2).tolist()[-1], len(wheels)
@@ -12,6 +13,7 @@ Source: Dijkstra (1959), "A note on two problems in connexion with graphs".
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,14 +25,14 @@ from .seen_map import SQUARE, SeenMap
 
 Window = tuple[slice, slice]
 
-# m: the body's middle stays this far from the centre of every square that is not known to be free; what such a square
-# holds is at most half a diagonal, 7 mm, nearer.
-ROOM = BODY + 0.009
+# m from the body's middle to the centre of every square that is not known to be free; what such a square holds is at
+# most half a diagonal, 7 mm, nearer.
+LEAST_ROOM = BODY + 0.009
 RIM = 10  # squares around the board that nothing stands on
-NEARBY = 0.06  # m: who stands in a narrower place may leave it, where it gets no narrower
+LEAVING_REACH = 0.06  # m: so far around, a robot in a narrower place may leave it where it gets no narrower
 STRIDES = ((1, 0), (0, 1), (1, 1), (1, -1))  # to half of the eight neighbours; the others are the same backwards
-SPEED = FASTEST * WHEEL  # m/s: as fast as it drives straight on
-SPIN = 2 * SPEED / AXLE  # rad/s: as fast as it turns on the spot
+DRIVE_SPEED = FASTEST * WHEEL  # m/s, straight on
+TURN_SPEED = 2 * DRIVE_SPEED / AXLE  # rad/s, on the spot
 
 
 @dataclass(frozen=True)
@@ -59,19 +61,8 @@ class Ways:
 
     def to(self, square: tuple[int, int]) -> Floats:
         """Return the corners of the shortest way to a square, shape (K, 2), metres; the start is left out."""
-        squares, at = [], int(np.ravel_multi_index(square, self.fits.shape))
-        while at >= 0:
-            squares.append(at)
-            at = int(self.before.flat[at])
-        return self._straightened(self.board.centers.reshape(-1, 2)[squares[::-1]])
-
-    def _straightened(self, way: Floats) -> Floats:
-        """Return a way without the corners that it can do without."""
-        kept, i = [], 0
-        while i < len(way) - 1:
-            i = next(j for j in range(len(way) - 1, i, -1) if j == i + 1 or self._is_free(way[i], way[j]))
-            kept.append(way[i])
-        return np.array(kept).reshape(-1, 2)
+        squares = trace(self.before.ravel(), int(np.ravel_multi_index(square, self.fits.shape)))
+        return tighten(self.board.centers.reshape(-1, 2)[squares], self._is_free)
 
     def _is_free(self, a: Floats, b: Floats) -> bool:
         steps = np.linspace(0, 1, 2 + int(4 * np.hypot(*(b - a)) / SQUARE))[:, None]
@@ -100,6 +91,26 @@ def ways_from(board: SeenMap, place: Floats) -> Ways:
     return Ways(board, room, fits, length.reshape(fits.shape), before.reshape(fits.shape))
 
 
+def trace(before: NDArray[np.int64], last: int) -> list[int]:
+    """Return the nodes from the start to the last one, from each node's predecessor; negative where there is none."""
+    nodes = [last]
+    while before[nodes[-1]] >= 0:
+        nodes.append(int(before[nodes[-1]]))
+    return nodes[::-1]
+
+
+def tighten(way: Floats, is_free: Callable[[Floats, Floats], bool]) -> Floats:
+    """Return a way without the corners that it can do without: from each, on to the last one in sight, shape (K, 2).
+
+    The start is left out.
+    """
+    kept, i = [], 0
+    while i < len(way) - 1:
+        i = next(j for j in range(len(way) - 1, i, -1) if j == i + 1 or is_free(way[i], way[j]))
+        kept.append(way[i])
+    return np.array(kept).reshape(-1, 2)
+
+
 def room_on(board: SeenMap) -> Floats:
     """Return how far each square's centre is from that of the nearest one not known to be free, shape (N, N), metres.
 
@@ -118,8 +129,8 @@ def standing_room(board: SeenMap, room: Floats, here: tuple[int, ...]) -> Bools:
     The square that the robot stands on is one in any case, and so are those nearby that are no narrower.
     """
     edge = board.size / 2 - np.abs(board.centers).max(axis=-1)
-    near = np.hypot(*np.moveaxis(board.centers - board.centers[here], -1, 0)) <= NEARBY
-    fits: Bools = (room >= ROOM) | (near & (room >= room[here]) & board.free)
+    near = np.hypot(*np.moveaxis(board.centers - board.centers[here], -1, 0)) <= LEAVING_REACH
+    fits: Bools = (room >= LEAST_ROOM) | (near & (room >= room[here]) & board.free)
     fits &= edge >= BODY + CLEAR
     fits[here] = True
     return fits
@@ -155,11 +166,11 @@ def wheels_along(pose: Floats, way: Floats) -> Floats:
 
 def turning(turn: float) -> Floats:
     """Return the wheel speeds of a turn on the spot by so many radians, shape (T, 2), rad/s."""
-    n = int(np.ceil(abs(turn) / (SPIN * PERIOD) - 1e-9))
+    n = int(np.ceil(abs(turn) / (TURN_SPEED * PERIOD) - 1e-9))
     return np.tile((-1.0, 1.0), (n, 1)) * turn * AXLE / (2 * WHEEL * PERIOD * max(1, n))
 
 
 def forward(way: float) -> Floats:
     """Return the wheel speeds that lead so many metres straight on, shape (T, 2), rad/s."""
-    n = int(np.ceil(way / (SPEED * PERIOD) - 1e-9))
+    n = int(np.ceil(way / (DRIVE_SPEED * PERIOD) - 1e-9))
     return np.full((n, 2), min(FASTEST, way / (WHEEL * PERIOD * max(1, n))))

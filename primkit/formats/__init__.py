@@ -35,15 +35,13 @@ from .files import StrPath, write_atomically
 from .maps import MAP_ENDINGS, MAP_LIMIT, load_world, save_world
 from .routes import ROUTE_ENDINGS, ROUTE_LIMIT, Route, load_route, save_route
 from .scans import SCAN_ENDINGS, SCANS_LIMIT, load_scans, save_scans
-from .suite import SUITE_SEED, make_paper_suite, paper_suite, scripted_drives
+from .suite import paper_suite, scripted_drives
 
 __all__ = [
     "load_world",
     "save_world",
     "paper_suite",
-    "make_paper_suite",
     "scripted_drives",
-    "SUITE_SEED",
     "load_scans",
     "save_scans",
     "Drive",

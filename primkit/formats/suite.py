@@ -1,4 +1,4 @@
-"""Suite: the paper's 34 maps, as files, the seeds they were drawn from, and a scripted drive on each.
+"""Suite: the paper's 34 maps, as files, and a scripted drive on each.
 
 Out: ``World`` by name: one shape of each kind alone, then ten maps each of two, three and four shapes; ``Route`` by
      the same names.
@@ -8,21 +8,21 @@ Out: ``World`` by name: one shape of each kind alone, then ten maps each of two,
 (34, ['1-pentagon', '2-01'], 'pentagon')
 
 Source: the paper names the number of its maps and how they were drawn, and not the maps: these are drawn alike. Of
-its manual drives it tells the times alone: these were steered by a script, ``study.scripted_route``, and by nobody.
+its manual drives it tells the times alone: these were steered by a script, ``driving.scripted``, and by nobody.
+
+Not here: how the files were made (``tests/shipped_data.py``).
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
-from ..shapes import KINDS, Kind
-from ..world import World, random_world
+from ..shapes import KINDS
+from ..world import World
 from .maps import load_world
 from .routes import Route, load_route
 
-SUITE_SEED = 34  # any number would do
+SUITE = (*(f"1-{kind}" for kind in KINDS), *(f"{n}-{k:02d}" for n in (2, 3, 4) for k in range(1, 11)))
 
 
 def paper_suite() -> dict[str, World]:
@@ -45,7 +45,7 @@ def paper_suite() -> dict[str, World]:
     4
     """
     folder = _data_folder() / "maps"
-    return {name: load_world(folder / f"{name}.geojson") for name in _suite_plan()}
+    return {name: load_world(folder / f"{name}.geojson") for name in SUITE}
 
 
 def scripted_drives() -> dict[str, Route]:
@@ -67,29 +67,7 @@ def scripted_drives() -> dict[str, Route]:
     3
     """
     folder = _data_folder() / "drives"
-    return {name: load_route(folder / f"{name}.json") for name in _suite_plan()}
-
-
-def make_paper_suite() -> dict[str, World]:
-    """Return the 34 maps freshly drawn from their fixed seeds, as they were when their files were written.
-
-    Examples
-    --------
-    >>> make_paper_suite()["1-circle"].shapes[0].kind
-    'circle'
-    """
-    # NumPy may draw other numbers from a seed in a later version, so the files are the truth and this tells
-    # how they came about. Map number k has a seed of its own: changing one map leaves the others alone.
-    return {
-        name: random_world(n, kinds=kinds, rng=np.random.default_rng([SUITE_SEED, number]))
-        for number, (name, (n, kinds)) in enumerate(_suite_plan().items(), start=1)
-    }
-
-
-def _suite_plan() -> dict[str, tuple[int, list[Kind] | None]]:
-    """Return the name of each map with its number of shapes and their kinds (None: drawn)."""
-    plan: dict[str, tuple[int, list[Kind] | None]] = {f"1-{kind}": (1, [kind]) for kind in KINDS}
-    return plan | {f"{n}-{number:02d}": (n, None) for n in (2, 3, 4) for number in range(1, 11)}
+    return {name: load_route(folder / f"{name}.json") for name in SUITE}
 
 
 def _data_folder() -> Path:

@@ -17,7 +17,7 @@ thing at a time. Not here: the drives (``driving``), and the pictures (``plots``
 Source: the paper's section 3.3, "Results".
 """
 
-from ..driving.scripted import drives_on, make_scripted_drive, scripted_route
+from ..driving.scripted import drives_on, scripted_route
 from ..driving.wander import wander
 from .accuracy.accuracy_table import AccuracyLine, AccuracyTable, accuracy_as_csv, run_accuracy
 from .accuracy.partial import PartialLine, PartialTable, run_partial
@@ -41,4 +41,4 @@ __all__ += ["ORACLE", "Oracle", "told_points", "oracle_fit", "share_seen", "shar
 __all__ += ["seen_table", "SeenTable", "SeenLine"]
 __all__ += ["accuracy_study", "run_accuracy", "AccuracyTable", "AccuracyLine", "accuracy_as_csv"]
 __all__ += ["run_partial", "PartialTable", "PartialLine", "SWEEPS", "REMEDIES", "UNTUNED"]
-__all__ += ["wander", "scripted_route", "drives_on", "make_scripted_drive"]
+__all__ += ["wander", "scripted_route", "drives_on"]
