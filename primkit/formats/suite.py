@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..shapes import KINDS, Kind
+from ..shapes import PRIMITIVES, Kind
 from ..world import World, random_world
 from .maps import load_world
 from .routes import Route, load_route
@@ -88,7 +88,7 @@ def make_paper_suite() -> dict[str, World]:
 
 def _suite_plan() -> dict[str, tuple[int, list[Kind] | None]]:
     """Return the name of each map with its number of shapes and their kinds (None: drawn)."""
-    plan: dict[str, tuple[int, list[Kind] | None]] = {f"1-{kind}": (1, [kind]) for kind in KINDS}
+    plan: dict[str, tuple[int, list[Kind] | None]] = {f"1-{kind}": (1, [kind]) for kind in PRIMITIVES}
     return plan | {f"{n}-{number:02d}": (n, None) for n in (2, 3, 4) for number in range(1, 11)}
 
 
