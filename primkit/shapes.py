@@ -16,6 +16,7 @@ Out: frozen shapes that know their kind, centroid, dimensions, outline and signe
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -26,13 +27,17 @@ from .arguments import as_count, as_point, as_points, as_positive
 if TYPE_CHECKING:
     import shapely
 
-Kind = Literal["circle", "triangle", "rectangle", "pentagon"]
-KINDS: tuple[Kind, ...] = ("circle", "triangle", "rectangle", "pentagon")
+Kind = Literal["circle", "triangle", "rectangle", "pentagon", "polygon"]
+KINDS: tuple[Kind, ...] = ("circle", "triangle", "rectangle", "pentagon", "polygon")
+PRIMITIVES = KINDS[:4]  # the paper's; "polygon" is any other outline of straight sides
 
 # Corners closer than a nanometre are one corner: far below the 1 mm grid, far above rounding (1e-16 m).
 SAME_CORNER = 1e-9
 # A corner that bends the outline by less than this (in radians) is no corner: the sides are one side.
 STRAIGHT = 1e-9
+# Four corners within this of 90 degrees make a rectangle: no better do points of a short side tell its direction.
+NEARLY_RIGHT = np.radians(2)
+SHOWN_CORNERS = 6  # a polygon with more is printed with its first three
 
 
 def _pair(point: NDArray[np.float64]) -> str:
@@ -145,7 +150,7 @@ class Circle:
 
 @dataclass(frozen=True, eq=False)
 class Polygon:
-    """A convex polygon with three to five corners, counter-clockwise.
+    """A simple polygon, convex or not, counter-clockwise.
 
     Corners given clockwise are turned round (the first one stays first); a corner that repeats its
     neighbour, as a closed ring's last one does, is dropped.
@@ -158,26 +163,28 @@ class Polygon:
     Raises
     ------
     ValueError
-        If fewer than three or more than five corners are left, if three corners lie on one line, or if
-        the outline crosses itself or is not convex.
+        If fewer than three corners are left, if three neighbours lie on one line, or if the outline crosses or
+        touches itself.
 
     Examples
     --------
-    A clockwise ring that closes on itself is put right:
+    A clockwise ring that closes on itself is put right; an arrow head is a polygon too:
 
     >>> p = Polygon([(0, 0), (0, 1), (1, 0), (0, 0)])
     >>> p.vertices.tolist()
     [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]
     >>> p.kind, p.centroid.round(3).tolist()
     ('triangle', [0.333, 0.333])
+    >>> Polygon([(0, 0), (2, 1), (0, 2), (1, 1)]).kind
+    'polygon'
     """
 
     vertices: NDArray[np.float64]
 
     def __init__(self, vertices: ArrayLike) -> None:
         corners = _without_repeats(as_points(vertices, "vertices"))
-        if not 3 <= len(corners) <= 5:
-            raise ValueError(f"a polygon must have 3 to 5 different corners, got {len(corners)}")
+        if len(corners) < 3:
+            raise ValueError(f"a polygon must have at least 3 different corners, got {len(corners)}")
         object.__setattr__(self, "vertices", _frozen(_counter_clockwise(corners)))
 
     def __reduce__(self) -> tuple[type[Polygon], tuple[NDArray[np.float64]]]:
@@ -186,8 +193,19 @@ class Polygon:
 
     @property
     def kind(self) -> Kind:
-        """``"triangle"``, ``"rectangle"`` (four corners) or ``"pentagon"``."""
-        return KINDS[len(self.vertices) - 2]
+        """``"triangle"``, ``"rectangle"``, ``"pentagon"`` (five corners, convex), or else ``"polygon"``.
+
+        A rectangle has four right angles, each to within 2 degrees: the corners of a measured one are never exact.
+        """
+        n, turns = len(self.vertices), self.turns
+        right = n == 4 and bool((np.abs(turns - np.pi / 2) <= NEARLY_RIGHT).all())
+        named = n == 3 or right or (n == 5 and bool((turns > 0).all()))
+        return KINDS[n - 2] if named else "polygon"
+
+    @cached_property
+    def turns(self) -> NDArray[np.float64]:
+        """How far the outline bends at each corner, shape (K,), radians; negative where it bends inwards."""
+        return turns_of(self.vertices)
 
     @property
     def edges(self) -> NDArray[np.float64]:
@@ -226,13 +244,13 @@ class Polygon:
 
     @property
     def dimensions(self) -> tuple[float, ...]:
-        """Rectangle: ``(width, height)``, width >= height; triangle and pentagon: their sides, in metres.
+        """Rectangle: ``(width, height)``, width >= height; all others: their sides in order, in metres.
 
         Each of a rectangle's two is the mean of two opposite sides, so that a measured outline whose
         corners are not exactly square still has one width and one height.
         """
         sides = self.sides
-        if len(sides) == 4:
+        if self.kind == "rectangle":
             sides = np.sort((sides[:2] + sides[2:]) / 2)[::-1]
         return tuple(sides.tolist())
 
@@ -254,7 +272,9 @@ class Polygon:
         dx, dy = self.edges.T[..., None]
         along = np.clip((x * dx + y * dy) / (dx**2 + dy**2), 0.0, 1.0)
         distance = np.hypot(x - along * dx, y - along * dy).min(axis=0)
-        inside = (x * dy < y * dx).all(axis=0)  # to the left of every side
+        # Inside, a ray to the right of the point crosses the outline an odd number of times (even-odd rule).
+        crossed = ((y > 0) != (_next(y) > 0)) & ((x * dy > y * dx) == (dy < 0))
+        inside = np.logical_xor.reduce(crossed, axis=0)
         return np.where(inside, -distance, distance)
 
     def moved(self, offset: ArrayLike = (0.0, 0.0), angle: float = 0.0) -> Polygon:
@@ -280,7 +300,7 @@ class Polygon:
         return hash(tuple(self.vertices.ravel().tolist()))  # not of the bytes: -0.0 equals 0.0
 
     def __repr__(self) -> str:
-        return f"Polygon([{', '.join(map(_pair, self.vertices))}])"
+        return f"Polygon([{_listed(self.vertices)}])"
 
 
 Shape = Circle | Polygon
@@ -301,19 +321,45 @@ def _without_repeats(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     return corners[:-1] if closed else corners
 
 
-def _counter_clockwise(corners: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return convex corners counter-clockwise, or refuse what is not convex."""
+def turns_of(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return how far a ring of corners bends at each, to the left, shape (K,), radians in (-pi, pi].
+
+    >>> np.degrees(turns_of(np.array([(0, 0), (2, 1), (0, 2), (1, 1)]))).round().tolist()
+    [108.0, 127.0, 108.0, -90.0]
+    """
     edges = _next(corners) - corners
     before = np.concatenate([edges[-1:], edges[:-1]])
     cross = before[:, 0] * edges[:, 1] - before[:, 1] * edges[:, 0]
-    turn = np.arctan2(cross, (before * edges).sum(axis=1))  # how far the outline bends at each corner
-    straight = np.abs(np.abs(turn) - np.pi / 2) > np.pi / 2 - STRAIGHT
+    return np.arctan2(cross, (before * edges).sum(axis=1))
+
+
+def _counter_clockwise(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the corners of a simple polygon counter-clockwise, or refuse what is none."""
+    turns = turns_of(corners)
+    straight = np.abs(np.abs(turns) - np.pi / 2) > np.pi / 2 - STRAIGHT
     if straight.any():
-        row = int(np.argmax(straight))
-        corner = _pair(corners[row])
+        corner = _pair(corners[int(np.argmax(straight))])
         raise ValueError(f"a polygon's corners must not lie on one line, got {corner} between its neighbours")
-    # A convex outline bends one way only and turns round once: 2 pi in all (a pentagram turns round twice).
-    if abs(abs(turn.sum()) - 2 * np.pi) > 1e-6 or not (np.all(turn > 0) or np.all(turn < 0)):
-        ring = ", ".join(map(_pair, corners))
-        raise ValueError(f"a polygon must be convex and must not cross itself, got [{ring}]")
-    return corners if turn[0] > 0 else np.roll(corners[::-1], 1, axis=0)
+    # An outline that does not cross itself turns round once, 2 pi in all; one that bends one way only is simple then.
+    convex = abs(abs(turns.sum()) - 2 * np.pi) < 1e-6 and (np.all(turns > 0) or np.all(turns < 0))
+    if not convex:
+        _check_simple(corners)
+    return corners if turns.sum() > 0 else np.roll(corners[::-1], 1, axis=0)
+
+
+def _check_simple(corners: NDArray[np.float64]) -> None:
+    """Refuse an outline that crosses or touches itself, and name one place where it does."""
+    import shapely
+
+    ring = shapely.Polygon(corners)
+    if not ring.is_valid:
+        place = shapely.is_valid_reason(ring).partition("[")[2].rstrip("]")  # such as "Self-intersection[0.5 0.5]"
+        x, y = map(float, place.split())
+        raise ValueError(f"a polygon must not cross or touch itself, got a meeting at ({x:.6g}, {y:.6g})")
+
+
+def _listed(corners: NDArray[np.float64]) -> str:
+    """Write corners for reading: all of a few, the first three of many."""
+    if len(corners) <= SHOWN_CORNERS:
+        return ", ".join(map(_pair, corners))
+    return f"{', '.join(map(_pair, corners[:3]))}, ... {len(corners)} corners"

@@ -1,9 +1,10 @@
 """World: a board with shapes on it, and random boards.
 
-Second step of the story. The board is a square centred on the origin; its edge is invisible to the LiDAR.
+Second step of the story. The board is a square centred on the origin; its edge is invisible to the LiDAR, unless
+there are walls.
 
 In:  a number of shapes and a seed (or the shapes themselves).
-Out: a ``World``: ``.shapes`` (a tuple of Circle and Polygon) and ``.size`` in metres.
+Out: a ``World``: ``.shapes`` (a tuple of Circle and Polygon), ``.size`` in metres and ``.walls``.
 
 >>> world = random_world(4, rng=7)
 >>> len(world.shapes), world.size
@@ -23,8 +24,8 @@ from typing import Literal
 
 import numpy as np
 
-from .arguments import as_count, as_positive, as_rng, short
-from .shapes import KINDS, Circle, Kind, Polygon, Shape
+from .arguments import Floats, as_count, as_positive, as_rng, check_type, short
+from .shapes import PRIMITIVES, Circle, Kind, Polygon, Shape, turns_of
 
 # The paper's maps: one shape in each quadrant, near the quadrant's centre.
 QUADRANTS = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], dtype=float)
@@ -41,7 +42,12 @@ LEAST_SIDE = 0.04
 TRIES_PER_SHAPE = 300  # a shape that found no room in this many tries will hardly find any
 TRIES_PER_WORLD = 20
 
-Style = Literal["paper", "free"]
+Style = Literal["paper", "free", "any"]
+STYLES: tuple[Style, ...] = ("paper", "free", "any")
+# What stands on a board in the style "any", beside the four kinds: polygons of 4, 6, 10, 6, 8, 8 and 4 corners.
+Sort = Literal["quadrilateral", "hexagon", "star", "L", "T", "U", "arrow"]
+SORTS: tuple[Sort, ...] = ("quadrilateral", "hexagon", "star", "L", "T", "U", "arrow")
+CORNERS = {"triangle": 3, "quadrilateral": 4, "pentagon": 5, "hexagon": 6}  # of convex irregular shapes
 
 
 @dataclass(frozen=True)
@@ -54,22 +60,28 @@ class World:
         What stands on the board. Shapes may touch or overlap; ``random_world`` never makes them so.
     size : float
         Side of the board in metres; it spans ``[-size/2, size/2]`` both ways.
+    walls : bool
+        Whether the board's edge is a wall, which the LiDAR sees from inside. Outside, all is solid.
 
     Raises
     ------
     ValueError
-        If something other than a Circle or a Polygon is among the shapes, or the size is not above zero.
+        If something other than a Circle or a Polygon is among the shapes, the size is not above zero, or walls is
+        neither True nor False.
 
     Examples
     --------
     >>> World([Circle((0, 0), 0.1)]).shapes[0].kind
     'circle'
+    >>> World(walls=True).walls[0].tolist()
+    [[-0.5, -0.5], [0.5, -0.5]]
     """
 
     shapes: tuple[Shape, ...]
     size: float = 1.0
+    walled: bool = False
 
-    def __init__(self, shapes: Iterable[Shape] = (), size: float = 1.0) -> None:
+    def __init__(self, shapes: Iterable[Shape] = (), size: float = 1.0, *, walls: bool = False) -> None:
         try:
             shapes = tuple(shapes)
         except TypeError:
@@ -79,10 +91,21 @@ class World:
                 raise ValueError(f"a world's shapes must be Circle or Polygon, got {type(shape).__name__}")
         object.__setattr__(self, "shapes", shapes)
         object.__setattr__(self, "size", as_positive(size, "size"))
+        check_type(walls, (bool, np.bool_), "walls must be True or False")
+        object.__setattr__(self, "walled", bool(walls))
+
+    @property
+    def walls(self) -> Floats:
+        """The walls' ends, shape (4, 2, 2), metres, counter-clockwise from the lower left; (0, 2, 2) without walls."""
+        corners = self.size / 2 * QUADRANTS
+        return np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)[: 4 * self.walled]
+
+    def __repr__(self) -> str:
+        return f"World(shapes={self.shapes!r}, size={self.size!r}{', walls=True' * self.walled})"
 
     @cached_property
     def _hash(self) -> int:
-        return hash((self.shapes, self.size))
+        return hash((self.shapes, self.size, self.walled))
 
     def __hash__(self) -> int:
         return self._hash  # kept: the ray caster looks worlds up, and a world may have ten thousand shapes
@@ -114,9 +137,10 @@ def random_world(
     n: int,
     *,
     style: Style = "paper",
-    kinds: Sequence[Kind] | None = None,
+    kinds: Sequence[Kind | Sort] | None = None,
     gap: float = 0.05,
     size: float = 1.0,
+    walls: bool = False,
     rng: int | np.random.Generator | None = None,
 ) -> World:
     """Return a board with n random shapes that do not touch.
@@ -125,17 +149,22 @@ def random_world(
     ----------
     n : int
         Number of shapes; at most four in the paper's style.
-    style : {"paper", "free"}
+    style : {"paper", "free", "any"}
         ``"paper"``: at most one shape in each quadrant, sides parallel to the axes, the paper's sizes.
         ``"free"``: anywhere, turned by any angle; triangles, rectangles and pentagons are irregular, with
         every corner between 30 and 150 degrees and every side at least 4 cm long.
+        ``"any"``: as free, with other polygons beside the four kinds: an irregular ``"quadrilateral"`` or
+        ``"hexagon"``, a five-pointed ``"star"``, an ``"L"``, ``"T"`` or ``"U"``, and an ``"arrow"`` head.
     kinds : sequence of str, optional
-        The kind of each shape, n of them; drawn evenly from the four kinds when not given.
+        The kind of each shape, n of them; drawn evenly from the four kinds when not given. In the style ``"any"``
+        also one of the sorts above, or ``"polygon"`` for one of them at random.
     gap : float
         Least distance between two outlines in metres.
     size : float
         Side of the board in metres. Outlines stay 0.12 m from its edge (inside +-0.38 m by default), so
         that way-points lie on every side of them.
+    walls : bool
+        Whether there are walls around the board.
     rng : int or numpy.random.Generator, optional
         Seed or generator. The same seed gives the same world.
 
@@ -156,38 +185,41 @@ def random_world(
     rng = as_rng(rng)
     n = as_count(n, "n", least=0)
     gap, size = as_positive(gap, "gap", zero=True), as_positive(size, "size")
-    if style not in ("paper", "free"):
-        raise ValueError(f'style must be "paper" or "free", got {style!r}')
+    if style not in STYLES:
+        raise ValueError(f'style must be "paper", "free" or "any", got {style!r}')
     if style == "paper" and n > len(QUADRANTS):
         raise ValueError(f'the paper\'s style has room for at most 4 shapes, got {n}; use style="free" for more')
-    kinds = _checked_kinds(kinds, n, rng)
+    kinds = _checked_kinds(kinds, n, style, rng)
 
     for _ in range(TRIES_PER_WORLD):
         shapes = _try_to_place(kinds, style, gap, size, rng)
         if shapes is not None:
-            return World(shapes, size)
+            return World(shapes, size, walls=walls)
     raise ValueError(
         f"no room found for {n} shapes with a gap of {gap:g} m on a board of {size:g} m: "
         "ask for fewer shapes, a smaller gap or a larger board"
     )
 
 
-def _checked_kinds(kinds: Sequence[Kind] | None, n: int, rng: np.random.Generator) -> list[Kind]:
+def _checked_kinds(
+    kinds: Sequence[Kind | Sort] | None, n: int, style: Style, rng: np.random.Generator
+) -> list[Kind | Sort]:
     """Return n kinds, drawn evenly when none are given."""
+    drawn = (*PRIMITIVES, *SORTS) if style == "any" else PRIMITIVES
     if isinstance(kinds, str):
         raise ValueError(f"kinds must be a list of kinds, such as [{kinds!r}], got the text {kinds!r}")
     if kinds is None:
-        return [KINDS[i] for i in rng.integers(len(KINDS), size=n)]
+        return [drawn[i] for i in rng.integers(len(drawn), size=n)]
     if len(kinds) != n:
         raise ValueError(f"kinds must name one kind for each of the {n} shapes, got {len(kinds)}")
     for kind in kinds:
-        if kind not in KINDS:
-            raise ValueError(f"a kind must be one of {', '.join(KINDS)}, got {kind!r}")
-    return list(kinds)
+        if kind not in drawn and not (kind == "polygon" and style == "any"):
+            raise ValueError(f"a kind must be one of {', '.join(drawn)}, got {kind!r}")
+    return [SORTS[rng.integers(len(SORTS))] if kind == "polygon" else kind for kind in kinds]
 
 
 def _try_to_place(
-    kinds: Sequence[Kind], style: Style, gap: float, size: float, rng: np.random.Generator
+    kinds: Sequence[Kind | Sort], style: Style, gap: float, size: float, rng: np.random.Generator
 ) -> list[Shape] | None:
     """Place the shapes one after the other, each where it keeps the gap; None when one found no room."""
     limit = size / 2 - EDGE_MARGIN
@@ -220,7 +252,7 @@ def _fits(shape: Shape, placed: Sequence[Shape], gap: float, limit: float) -> bo
     return bool((extent <= limit).all()) and all(g >= gap and g > 0 for g in gaps)  # polygons that overlap are 0 apart
 
 
-def paper_shape(kind: Kind, center: np.ndarray, rng: np.random.Generator) -> Shape:
+def paper_shape(kind: Kind | Sort, center: np.ndarray, rng: np.random.Generator) -> Shape:
     """Return a random shape with the sizes of the paper's maps, sides parallel to the axes.
 
     ``center``, shape (2,), metres, is where the published code puts the shape: for a triangle the middle
@@ -237,10 +269,11 @@ def paper_shape(kind: Kind, center: np.ndarray, rng: np.random.Generator) -> Sha
     return Polygon(center + rng.uniform(0.05, 0.10) * PENTAGON)
 
 
-def free_shape(kind: Kind, center: np.ndarray, rng: np.random.Generator) -> Shape:
-    """Return a random shape, turned by any angle; polygons are irregular, with corners that can be told.
+def free_shape(kind: Kind | Sort, center: np.ndarray, rng: np.random.Generator) -> Shape:
+    """Return a random shape, turned by any angle; convex polygons are irregular, with corners that can be told.
 
-    ``center``, shape (2,), metres: the centre of the circle that the corners are drawn on or near.
+    ``center``, shape (2,), metres: the centre of the circle that the corners are drawn on or near; of a star, an L, T,
+    U or arrow head the centroid.
     """
     turn = rng.uniform(0, 2 * np.pi)
     if kind == "circle":
@@ -249,7 +282,10 @@ def free_shape(kind: Kind, center: np.ndarray, rng: np.random.Generator) -> Shap
         width, height = rng.uniform(0.06, 0.30, 2)
         corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (width / 2, height / 2)
         return Polygon(corners + center).moved(angle=turn)
-    n = 3 if kind == "triangle" else 5
+    if kind not in CORNERS:
+        shape = Polygon(_corners_of(kind, rng))
+        return shape.moved(center - shape.centroid, turn)
+    n = CORNERS[kind]
     while True:  # every fourth triangle and every eighth pentagon has corners that can all be told apart
         bearings = turn + np.sort(rng.uniform(0, 2 * np.pi, n))
         radii = rng.uniform(0.06, 0.15) * rng.uniform(0.7, 1.0, n)
@@ -258,10 +294,26 @@ def free_shape(kind: Kind, center: np.ndarray, rng: np.random.Generator) -> Shap
             return Polygon(corners)
 
 
+def _corners_of(sort: str, rng: np.random.Generator) -> Floats:
+    """Return the corners of an upright star, L, T, U or arrow head, 16 to 26 cm wide and high, arms of 4 to 6 cm."""
+    (w, h), t = rng.uniform(0.16, 0.26, 2), rng.uniform(0.04, 0.06)
+    if sort == "star":
+        bearings = np.arange(10) * np.pi / 5
+        radii = np.tile([w / 2, rng.uniform(0.4, 0.6) * w / 2], 5)
+        return radii[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)])
+    left, right, top = (w - t) / 2, (w + t) / 2, h - t
+    return np.array(
+        {
+            "L": [(0, 0), (w, 0), (w, t), (t, t), (t, h), (0, h)],
+            "T": [(left, 0), (right, 0), (right, top), (w, top), (w, h), (0, h), (0, top), (left, top)],
+            "U": [(0, 0), (w, 0), (w, h), (w - t, h), (w - t, t), (t, t), (t, h), (0, h)],
+            "arrow": [(0, 0), (w / 2, t), (w, 0), (w / 2, h)],
+        }[sort]
+    )
+
+
 def _well_formed(corners: np.ndarray) -> bool:
     """Tell whether counter-clockwise corners are convex, with sides and angles that can be told apart."""
-    edges = np.roll(corners, -1, axis=0) - corners
-    before = np.roll(edges, 1, axis=0)
-    turn = np.arctan2(before[:, 0] * edges[:, 1] - before[:, 1] * edges[:, 0], (before * edges).sum(axis=1))
-    clear = (turn >= LEAST_CORNER) & (turn <= np.pi - LEAST_CORNER)
-    return bool(clear.all()) and bool((np.hypot(*edges.T) >= LEAST_SIDE).all())
+    turns, sides = turns_of(corners), np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
+    clear = (turns >= LEAST_CORNER) & (turns <= np.pi - LEAST_CORNER)
+    return bool(clear.all()) and bool((sides >= LEAST_SIDE).all())

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from primkit import evaluation
 from primkit.evaluation import Match, Report, evaluate, match
 from primkit.measure import Detection
-from primkit.shapes import KINDS, Circle, Polygon
+from primkit.shapes import PRIMITIVES, Circle, Polygon
 from primkit.world import PENTAGON, World, random_world
 from tests.helpers import exactly
 
@@ -356,7 +356,7 @@ TABLE_1 = {
 }
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", PRIMITIVES)
 def test_shapes_found_perfectly_score_as_in_table_1(kind):
     for seed in range(20):
         (shape,) = random_world(1, kinds=[kind], rng=seed).shapes

@@ -355,8 +355,8 @@ ONE_RING = "map.geojson, feature 1: a Polygon must have one ring and no holes, g
                 "two corners": [[0, 0], [1, 0], [0, 0]],
                 "three on a line": [[0, 0], [1, 0], [2, 0], [0, 0]],
                 "crosses itself": [[0, 0], [1, 1], [1, 0], [0, 1], [0, 0]],
-                "dented": [[0, 0], [2, 0], [1, 0.5], [1, 2], [0, 0]],
-                "100,000 corners": [*([k, k * k] for k in range(100_000)), [0, 0]],
+                "touches itself": [[0, 0], [2, 0], [2, 2], [1, 0], [0, 2], [0, 0]],
+                "100,000 corners that cross": [*([k % 2, k] for k in range(100_000)), [0.5, 0], [0, 0]],
             }.items()
         ],
         # positions

@@ -5,20 +5,22 @@ import pytest
 
 from primkit import formats
 from primkit.formats import paper_suite, save_world
-from primkit.shapes import KINDS, Circle
+from primkit.shapes import PRIMITIVES, Circle
 from tests.filing import refusal
 from tests.shipped_data import make_map
 
 
 def test_the_suite_has_one_map_of_each_kind_and_ten_each_of_two_three_and_four_shapes():
     suite = paper_suite()
-    assert list(suite) == [f"1-{kind}" for kind in KINDS] + [f"{n}-{k:02d}" for n in (2, 3, 4) for k in range(1, 11)]
+    assert list(suite) == [f"1-{kind}" for kind in PRIMITIVES] + [
+        f"{n}-{k:02d}" for n in (2, 3, 4) for k in range(1, 11)
+    ]
     for name, world in suite.items():
         assert len(world.shapes) == int(name[0])
         assert world.size == 1.0
         assert world.least_gap() >= 0.05
-    assert [suite[f"1-{kind}"].shapes[0].kind for kind in KINDS] == list(KINDS)
-    assert {shape.kind for world in suite.values() for shape in world.shapes} == set(KINDS)
+    assert [suite[f"1-{kind}"].shapes[0].kind for kind in PRIMITIVES] == list(PRIMITIVES)
+    assert {shape.kind for world in suite.values() for shape in world.shapes} == set(PRIMITIVES)
     assert len(set(suite.values())) == 34
 
 

@@ -28,7 +28,7 @@ from primkit.raycast.fan import CORNER_HIT, Fan
 from primkit.raycast.fast import BEAMS_PER_BLOCK, PAIRS_PER_BLOCK
 from primkit.raycast.near import CELLS_FROM, Near
 from primkit.robot import inside_shape, teleport_poses
-from primkit.shapes import KINDS, Circle, Polygon
+from primkit.shapes import PRIMITIVES, Circle, Polygon
 from primkit.world import World, free_shape, random_world
 from tests.helpers import exactly
 
@@ -153,7 +153,7 @@ def on_an_outline(world, pose, angle, value):
 def crowd(n, rng):
     """n shapes anywhere: they touch, overlap and hide each other."""
     centers = rng.uniform(-0.4, 0.4, (n, 2))
-    return World([free_shape(KINDS[rng.integers(4)], center, rng) for center in centers])
+    return World([free_shape(PRIMITIVES[rng.integers(4)], center, rng) for center in centers])
 
 
 def row_of_neighbours(rng):

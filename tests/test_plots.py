@@ -36,7 +36,7 @@ from primkit.plots import (
 )
 from primkit.robot import teleport_poses
 from primkit.segmentation import segment
-from primkit.shapes import KINDS, Circle, Polygon
+from primkit.shapes import KINDS, PRIMITIVES, Circle, Polygon
 from primkit.world import World, random_world
 from tests.helpers import exactly
 
@@ -58,7 +58,7 @@ def square(x, y, side):
     return Polygon([(x, y), (x + side, y), (x + side, y + side), (x, y + side)])
 
 
-FOUR_KINDS = random_world(4, kinds=KINDS, rng=3)
+FOUR_KINDS = random_world(4, kinds=PRIMITIVES, rng=3)
 CROWD = random_world(25, style="free", size=2, rng=1)
 DISC = World([Circle((0.2, 0.0), 0.1)])
 OVER_THE_EDGE = World([Circle((0.47, 0.47), 0.1), square(-0.55, -0.55, 0.1)])
@@ -253,9 +253,9 @@ def test_world_shows_each_shape_in_its_kinds_color_with_its_sign_and_name(ax):
     plot_world(FOUR_KINDS, ax)
     board, *areas = ax.patches
     assert board.get_width() == FOUR_KINDS.size
-    assert [to_hex(area.get_edgecolor()) for area in areas] == [KIND_COLORS[kind].lower() for kind in KINDS]
-    assert [line.get_marker() for line in ax.lines[: len(KINDS)]] == [KIND_MARKERS[kind] for kind in KINDS]
-    assert [text.get_text() for text in shown_labels(ax)] == list(KINDS)
+    assert [to_hex(area.get_edgecolor()) for area in areas] == [KIND_COLORS[kind].lower() for kind in PRIMITIVES]
+    assert [line.get_marker() for line in ax.lines[: len(PRIMITIVES)]] == [KIND_MARKERS[kind] for kind in PRIMITIVES]
+    assert [text.get_text() for text in shown_labels(ax)] == list(PRIMITIVES)
 
 
 def beams_of(ax):

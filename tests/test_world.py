@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import shapely
 
-from primkit.shapes import KINDS, Circle, Polygon
+from primkit.shapes import PRIMITIVES, Circle, Polygon
 from primkit.world import World, gap_between, random_world
 from tests.helpers import exactly
 
@@ -166,7 +166,7 @@ def test_paper_worlds_have_the_number_asked_for(paper_worlds):
 def test_all_kinds_are_drawn_evenly(style, paper_worlds, free_worlds):
     shapes = [shape.kind for world in {"paper": paper_worlds, "free": free_worlds}[style] for shape in world.shapes]
     expected, spread = len(shapes) / 4, np.sqrt(len(shapes) * 0.25 * 0.75)
-    for kind in KINDS:
+    for kind in PRIMITIVES:
         assert abs(shapes.count(kind) - expected) < 4 * spread
 
 
@@ -352,7 +352,7 @@ def test_a_generator_goes_on_and_no_seed_means_any_world():
 @pytest.mark.parametrize("style", ["paper", "free"])
 def test_kinds_come_in_the_order_asked_for(style):
     for seed in range(20):
-        kinds = list(np.random.default_rng(seed).choice(KINDS, 4).tolist())
+        kinds = list(np.random.default_rng(seed).choice(PRIMITIVES, 4).tolist())
         world = random_world(4, style=style, kinds=kinds, rng=seed)
         assert [shape.kind for shape in world.shapes] == kinds
 
@@ -373,10 +373,10 @@ RANDOM_WORLD_FAILURES = {
     "n a truth value": (True, {}, "n must be a whole number >= 0, got True"),
     "n None": (None, {}, "n must be a whole number >= 0, got None"),
     "n is text": ("4", {}, "n must be a whole number >= 0, got '4'"),
-    "unknown style": (1, {"style": "Paper"}, 'style must be "paper" or "free", got \'Paper\''),
-    "style None": (1, {"style": None}, 'style must be "paper" or "free", got None'),
+    "unknown style": (1, {"style": "Paper"}, 'style must be "paper", "free" or "any", got \'Paper\''),
+    "style None": (1, {"style": None}, 'style must be "paper", "free" or "any", got None'),
     "too few kinds": (2, {"kinds": ["circle"]}, "kinds must name one kind for each of the 2 shapes, got 1"),
-    "too many kinds": (1, {"kinds": KINDS}, "kinds must name one kind for each of the 1 shapes, got 4"),
+    "too many kinds": (1, {"kinds": PRIMITIVES}, "kinds must name one kind for each of the 1 shapes, got 4"),
     "unknown kind": (
         *(2, {"kinds": ["circle", "square"]}),
         "a kind must be one of circle, triangle, rectangle, pentagon, got 'square'",

@@ -17,12 +17,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..shapes import KINDS
+from ..shapes import PRIMITIVES
 from ..world import World
 from .maps import load_world
 from .routes import Route, load_route
 
-SUITE = (*(f"1-{kind}" for kind in KINDS), *(f"{n}-{k:02d}" for n in (2, 3, 4) for k in range(1, 11)))
+SUITE = (*(f"1-{kind}" for kind in PRIMITIVES), *(f"{n}-{k:02d}" for n in (2, 3, 4) for k in range(1, 11)))
 
 
 def paper_suite() -> dict[str, World]:

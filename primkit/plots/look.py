@@ -31,15 +31,22 @@ from ..shapes import Circle, Kind, Shape
 # Okabe and Ito's colours; their yellow is too faint on white. The first four have a contrast of 3 and more to white.
 BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
 ORANGE, SKY, BLACK = "#E69F00", "#56B4E9", "#000000"
+BROWN = "#7F5539"
 INK, GREY, PALE = "#222222", "#6E6E6E", "#C8C8C8"
 
-KIND_COLORS: dict[Kind, str] = {"circle": BLUE, "triangle": VERMILION, "rectangle": GREEN, "pentagon": PURPLE}
+KIND_COLORS: dict[Kind, str] = {
+    "circle": BLUE,
+    "triangle": VERMILION,
+    "rectangle": GREEN,
+    "pentagon": PURPLE,
+    "polygon": BROWN,
+}
 # The same, darker: letters need a contrast of 4.5 and more.
 KIND_INKS: dict[Kind, str] = {
     kind: to_hex((0.7 * red, 0.7 * green, 0.7 * blue))
     for kind, (red, green, blue) in ((kind, to_rgb(color)) for kind, color in KIND_COLORS.items())
 }
-KIND_MARKERS: dict[Kind, str] = {"circle": "o", "triangle": "^", "rectangle": "s", "pentagon": "p"}
+KIND_MARKERS: dict[Kind, str] = {"circle": "o", "triangle": "^", "rectangle": "s", "pentagon": "p", "polygon": "h"}
 # A cluster's kind is not known yet: the colours that no kind has come first, and no marker is a kind's. Seven colours
 # with six markers: the pairs repeat after 42 clusters.
 CLUSTER_COLORS = (ORANGE, SKY, BLACK, PURPLE, VERMILION, BLUE, GREEN)

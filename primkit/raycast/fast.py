@@ -21,7 +21,8 @@ A side, as seen by the robot R. F is the foot of the perpendicular on the side's
     A point of the line at s is seen at the bearing phi = arctan(s / h), counted from F on, and is
     t = sqrt(h^2 + s^2) away. So:
     1. h and the s of both ends follow from a cross and a dot product. h > 0: the side faces the robot.
-       A robot that no side of a convex polygon faces is inside.
+       A robot that no side of a convex polygon faces is inside; of another polygon, the crossings of a ray tell it.
+       Sides that face away need no look: coming from outside, a beam enters a polygon before it leaves it.
     2. The part of the side in range ends at s = +-sqrt(range^2 - h^2) at the latest.
     3. The bearings of the two ends of that part say which beams hit it: no other beam is looked at.
     4. Each of these beams meets the line at s = h tan(phi). Along a side seen edge-on, h is 0 and tan(phi) infinite,
@@ -31,6 +32,8 @@ A circle of radius r with its centre at the distance d stops the beams between i
 sqrt(d^2 - r^2) long; or up to where the range ends, if that is less. Robot, centre and this last point in sight, at the
 distance q, make a triangle: the beams lie within arccos((d^2 + q^2 - r^2) / (2 d q)) of the centre's bearing. At phi
 from it, the near side of the circle is d cos(phi) less half a chord away, and a chord is 2 sqrt(r^2 - (d sin(phi))^2).
+
+A wall is a polygon of one side: beyond it all is solid.
 
 Last, a beam keeps the nearest of its hits.
 
@@ -53,13 +56,13 @@ from .near import Near
 
 Hits = tuple[Ints, Floats, Ints]  # where in the table of ranges, how far; and the poses that lie in a shape
 
-# Poses are cast in blocks of at most so many pairs and beams: some MB, which stay in the cache, and which the system
-# does not take back between two blocks (getting them again would cost as much as all the computing).
+# Poses are cast in blocks of at most so many pairs (of polygons with five sides) and beams: some MB, which stay in the
+# cache, and which the system does not take back between two blocks (getting them again would cost as much as all the
+# computing).
 PAIRS_PER_BLOCK, BEAMS_PER_BLOCK = 16_384, 200_000
 # From a robot on a side, in line with it, rounding could turn a beam past the quarter turn, where the tangent changes
 # its sign: it would hit the side's other end. So no beam of a side is nearer to the quarter turn than this [rad].
 EDGE_ON = 2 * CORNER_HIT
-SIDES = 5  # of a polygon; fewer are filled up with sides without length, which face nobody
 
 
 def cast_rays(world: World, poses: ArrayLike, angles: ArrayLike, range_max: float = np.inf) -> Floats:
@@ -111,7 +114,7 @@ def cast(
     """
     scene, fan = _scene(world, float(range_max) + ROUNDING), _fan(angles.tobytes())
     ranges, inside = np.empty((len(poses), fan.size)), np.zeros(len(poses), dtype=bool)
-    step = max(1, min(PAIRS_PER_BLOCK // max(1, scene.near.most), BEAMS_PER_BLOCK // fan.size))
+    step = max(1, min(PAIRS_PER_BLOCK // max(1, scene.most), BEAMS_PER_BLOCK // fan.size))
     for start in range(0, len(poses), step):
         block = slice(start, start + step)
         for within in _cast_block(scene, fan, poses[block], ranges[block], (range_min, range_max)):
@@ -124,8 +127,8 @@ def _cast_block(scene: _Scene, fan: Fan, poses: Floats, ranges: Floats, limits: 
     """Fill in the ranges, shape (P, B), and return the poses that lie in a shape."""
     x, y, heading = poses.T.copy()
     heading -= TURN * np.floor(heading / TURN)  # many turns would cost digits
-    pose, shape = scene.near.pairs(x, y)
-    polygons, circles = (shape < scene.n_polygons).nonzero()[0], (shape >= scene.n_polygons).nonzero()[0]
+    pose, shape = scene.pairs(x, y)
+    polygons, circles = (shape >= scene.n_circles).nonzero()[0], (shape < scene.n_circles).nonzero()[0]
     nearest, hidden, inside = ranges.reshape(-1), [], []
     nearest.fill(np.inf)
     for pair, hits_on in ((polygons, _hits_on_sides), (circles, _hits_on_circles)):
@@ -139,41 +142,48 @@ def _cast_block(scene: _Scene, fan: Fan, poses: Floats, ranges: Floats, limits: 
     return inside
 
 
-def _hits_on_sides(scene: _Scene, fan: Fan, here: tuple[Floats, ...], pose: Ints, polygon: Ints) -> Hits:
-    """Return all hits on K pairs' polygons; the steps are those of the module's derivation."""
-    x, y, heading = here
-    # 1. The sides that face the robot: their right ends, and the ways d to their left ends, shape (K, 5).
-    right_x = scene.right_x.take(polygon, axis=0) - x.take(pose)[:, None]
-    right_y = scene.right_y.take(polygon, axis=0) - y.take(pose)[:, None]
-    dx, dy = scene.way_x.take(polygon, axis=0), scene.way_y.take(polygon, axis=0)
-    cross, dot = right_x * dy - right_y * dx, right_x * dx + right_y * dy
-    facing = (cross > 0).ravel().nonzero()[0]
-    pair = facing // SIDES
-    within = pose.compress(np.bincount(pair, minlength=len(pose)) == 0)
-    side, pose = SIDES * polygon.take(pair) + (facing - SIDES * pair), pose.take(pair)
-    length = scene.length.take(side)
-    h, right = cross.take(facing) / length, dot.take(facing) / length
+def _hits_on_sides(scene: _Scene, fan: Fan, here: tuple[Floats, ...], pose: Ints, shape: Ints) -> Hits:
+    """Return all hits on K pairs' polygons, with S sides in all; the steps are those of the module's derivation."""
+    (x, y, heading), polygon = here, shape - scene.n_circles
+    # 1. The sides that face the robot: their right ends, and the ways d to their left ends, shape (S,).
+    n_sides = scene.n_sides.take(polygon)
+    begin = n_sides.cumsum() - n_sides
+    own, side = pose.repeat(n_sides), (scene.first.take(polygon) - begin).repeat(n_sides)
+    side += np.arange(len(side))
+    right_x, right_y = scene.right_x.take(side) - x.take(own), scene.right_y.take(side) - y.take(own)
+    dx, dy, length = scene.way_x.take(side), scene.way_y.take(side), scene.length.take(side)
+    h = (right_x * dy - right_y * dx) / length
+    within = np.maximum.reduceat(h, begin) <= 0
+    if scene.any_dented:
+        dented, left_y = scene.dented.take(polygon), scene.left_y.take(side) - y.take(own)
+        along = right_x * dx + right_y * dy
+        on_it = (h == 0) & (along <= 0) & (along + length * length >= 0)
+        crossed = ((right_y > 0) != (left_y > 0)) & ((h > 0) == (dy > 0))  # by a ray from the robot along x
+        odd = np.logical_xor.reduceat(crossed, begin) | np.logical_or.reduceat(on_it, begin)
+        within = np.where(dented, odd, within)
 
     # 2. The part of each that is in range.
-    half = np.sqrt(np.maximum(scene.reach * scene.reach - h * h, 0.0))
-    left = np.where(h <= scene.reach, np.minimum(right + length, half), -np.inf)
-    right = np.maximum(right, -half)
+    seen = ((h > 0) & (h <= scene.reach)).nonzero()[0]
+    right = ((right_x * dx + right_y * dy) / length).take(seen)
+    own, side, h, length = own.take(seen), side.take(seen), h.take(seen), length.take(seen)
+    half = np.sqrt(scene.reach * scene.reach - h * h)
+    left, right = np.minimum(right + length, half), np.maximum(right, -half)
 
     # 3. The beams that hit it.
-    toward, off = scene.inward.take(side) - heading.take(pose), np.maximum(h, EDGE_ON * length)
+    toward, off = scene.inward.take(side) - heading.take(own), np.maximum(h, EDGE_ON * length)
     hit, beam = fan.between(toward + np.arctan2(right, off), toward + np.arctan2(left, off))
 
     # 4. Where, and how far that is.
     phi, h = fan.angles.take(beam) - toward.take(hit), h.take(hit)
     s = h * np.tan(phi)
     s = np.minimum(np.maximum(s, right.take(hit), out=s), left.take(hit), out=s)
-    return (fan.size * pose).take(hit) + beam, np.sqrt(h * h + s * s), within
+    return (fan.size * own).take(hit) + beam, np.sqrt(h * h + s * s), pose.compress(within)
 
 
 def _hits_on_circles(scene: _Scene, fan: Fan, here: tuple[Floats, ...], pose: Ints, shape: Ints) -> Hits:
     """Return all hits on K pairs' circles."""
     x, y, heading = here
-    cx, cy, r = (v.take(shape - scene.n_polygons) for v in (scene.center_x, scene.center_y, scene.radii))
+    cx, cy, r = (v.take(shape) for v in (scene.center_x, scene.center_y, scene.radii))
     cx, cy = cx - x.take(pose), cy - y.take(pose)
     d = np.sqrt(cx * cx + cy * cy)
     within, outside = pose.compress(d <= r), (d > r).nonzero()[0]
@@ -195,26 +205,41 @@ def _hits_on_circles(scene: _Scene, fan: Fan, here: tuple[Floats, ...], pose: In
 
 
 class _Scene:
-    """A world as arrays: its polygons' sides, its circles, and which of them are near."""
+    """A world as arrays: its circles, the sides of its polygons and walls, and which of them are near."""
 
     def __init__(self, world: World, reach: float) -> None:
         polygons = [s for s in world.shapes if isinstance(s, Polygon)]
         circles = [s for s in world.shapes if isinstance(s, Circle)]
-        self.reach, self.n_polygons = reach, len(polygons)
+        self.reach, self.n_circles, self.walls, self.half = reach, len(circles), len(world.walls), world.size / 2
         # Corners are counter-clockwise: from outside, each side goes from its left end to its right end.
-        left = np.array([np.pad(p.vertices, ((0, SIDES - len(p.vertices)), (0, 0)), "edge") for p in polygons])
-        left = left.reshape(-1, SIDES, 2)
-        right = np.roll(left, -1, axis=1)
-        self.right_x, self.right_y = np.ascontiguousarray(right[..., 0]), np.ascontiguousarray(right[..., 1])
-        self.way_x, self.way_y = left[..., 0] - self.right_x, left[..., 1] - self.right_y
+        rings = [p.vertices for p in polygons]
+        left = np.vstack([np.empty((0, 2)), *rings, world.walls[:, 1]])
+        right = np.vstack([np.empty((0, 2)), *(np.roll(ring, -1, axis=0) for ring in rings), world.walls[:, 0]])
+        self.n_sides = np.array([*map(len, rings), *(1 for _ in world.walls)], dtype=np.int64)
+        self.first = self.n_sides.cumsum() - self.n_sides
+        self.right_x, self.right_y = right.T.copy()
+        self.way_x, self.way_y = (left - right).T.copy()
+        self.left_y = left[:, 1].copy()
+        self.dented = np.array([*((p.turns < 0).any() for p in polygons), *(False for _ in world.walls)], dtype=bool)
+        self.any_dented = bool(self.dented.any())
         self.length = np.sqrt(self.way_x**2 + self.way_y**2)
         self.inward = np.arctan2(-self.way_x, self.way_y)  # the bearing of F from any robot that the side faces
         self.radii = np.array([c.radius for c in circles])
         self.center_x, self.center_y = np.array([c.center for c in circles]).reshape(-1, 2).T.copy()
-        middle = (left.min(axis=1) + left.max(axis=1)) / 2
-        around = np.linalg.norm(left - middle[:, None], axis=2).max(axis=1, initial=0.0)
-        x, y = np.append(middle[:, 0], self.center_x), np.append(middle[:, 1], self.center_y)
-        self.near = Near(x, y, np.append(around, self.radii), reach)
+        middle = np.array([(ring.min(axis=0) + ring.max(axis=0)) / 2 for ring in rings]).reshape(-1, 2)
+        around = [np.hypot(*(ring - m).T).max() for ring, m in zip(rings, middle, strict=True)]
+        x, y = np.append(self.center_x, middle[:, 0]), np.append(self.center_y, middle[:, 1])
+        self.near = Near(x, y, np.append(self.radii, around), reach)
+        self.most = (self.near.most + self.walls) * max(5, self.n_sides.max(initial=0)) // 5
+
+    def pairs(self, x: Floats, y: Floats) -> tuple[Ints, Ints]:
+        """Return each (position, shape) with the shape in range; the walls count after the shapes."""
+        position, shape = self.near.pairs(x, y)
+        if not self.walls:
+            return position, shape
+        away = self.half + np.stack([y, -x, -y, x])
+        wall, seer = (away <= self.reach).nonzero()
+        return np.append(position, seer), np.append(shape, len(self.near.x) + wall)
 
 
 @lru_cache(maxsize=16)

@@ -16,12 +16,13 @@ second, c a circle's centre and r its radius, all as seen from the robot. ``u x 
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from math import cos, inf, sin, sqrt
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..shapes import Circle, Polygon, Shape
+from ..shapes import Circle, Shape
 from ..world import World
 
 
@@ -47,11 +48,13 @@ def cast_plainly(world: World, poses: ArrayLike, angles: ArrayLike, range_max: f
     poses, angles = np.reshape(poses, (-1, 3)), np.asarray(angles, dtype=float)
     ranges = np.full((len(poses), len(angles)), inf)
     for i, (x, y, heading) in enumerate(poses.tolist()):
-        if any(shape.signed_distance([(x, y)])[0] <= 0 for shape in world.shapes):
+        beyond = len(world.walls) > 0 and max(abs(x), abs(y)) >= world.size / 2
+        if beyond or any(shape.signed_distance([(x, y)])[0] <= 0 for shape in world.shapes):
             continue
         for j, angle in enumerate(angles.tolist()):
             ux, uy = cos(heading + angle), sin(heading + angle)
-            nearest = min((_distance_along(shape, x, y, ux, uy) for shape in world.shapes), default=inf)
+            nearest = _to_sides(world.walls.tolist(), x, y, ux, uy)
+            nearest = min([nearest, *(_distance_along(shape, x, y, ux, uy) for shape in world.shapes)])
             if nearest <= range_max:
                 ranges[i, j] = nearest
     return ranges
@@ -59,14 +62,17 @@ def cast_plainly(world: World, poses: ArrayLike, angles: ArrayLike, range_max: f
 
 def _distance_along(shape: Shape, x: float, y: float, ux: float, uy: float) -> float:
     """Return the distance from a point outside a shape to its outline, along u; infinity when u misses it."""
-    return _to_circle(shape, x, y, ux, uy) if isinstance(shape, Circle) else _to_polygon(shape, x, y, ux, uy)
+    if isinstance(shape, Circle):
+        return _to_circle(shape, x, y, ux, uy)
+    corners = shape.vertices.tolist()
+    return _to_sides(zip(corners, corners[1:] + corners[:1], strict=True), x, y, ux, uy)
 
 
-def _to_polygon(polygon: Polygon, x: float, y: float, ux: float, uy: float) -> float:
+def _to_sides(sides: Iterable[Sequence[Sequence[float]]], x: float, y: float, ux: float, uy: float) -> float:
     """Solve ``t u = a + s d`` for each side: crossed with d it gives t, crossed with u it gives s."""
     nearest = inf
-    for corner, (dx, dy) in zip(polygon.vertices.tolist(), polygon.edges.tolist(), strict=True):
-        ax, ay = corner[0] - x, corner[1] - y
+    for (first_x, first_y), (last_x, last_y) in sides:
+        ax, ay, dx, dy = first_x - x, first_y - y, last_x - first_x, last_y - first_y
         across = ux * dy - uy * dx
         if across != 0:  # else the beam runs beside the side
             t = (ax * dy - ay * dx) / across
