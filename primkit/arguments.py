@@ -11,7 +11,10 @@ ValueError: points must be finite, got (3.0, nan) in row 1
 
 from __future__ import annotations
 
+import reprlib
+import warnings
 from collections.abc import Iterable
+from numbers import Number
 from typing import Any
 
 import numpy as np
@@ -19,12 +22,17 @@ from numpy.typing import ArrayLike, NDArray
 
 # The arrays that the whole library works on; shapes and units stand in the docstrings.
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Labels = NDArray[np.int64]
+Ints = NDArray[np.intp]
+Labels = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
 # 0.305 - 0.3 is a little more than 0.005: a value this much [m] beyond a limit that is included lies on it.
 ROUNDING = 1e-12
+FARTHEST = 1e50  # a larger number is a mistake, and its sixth power would not fit into a float
+
+
+class LikelyWrong(UserWarning):
+    """Told of a value that is allowed, but is most likely in another unit, or in the wrong place."""
 
 
 def as_points(points: ArrayLike | Iterable[Any], name: str = "points") -> Floats:
@@ -52,8 +60,8 @@ def as_points(points: ArrayLike | Iterable[Any], name: str = "points") -> Floats
     if hasattr(points, "points"):  # a Grid or Scans, handed in whole
         raise ValueError(f"{name} must be an (N, 2) array, got a {type(points).__name__}; did you mean its points()?")
     try:
-        array = _as_floats(points)
-    except (TypeError, ValueError, OverflowError):
+        array = as_floats(points, name)
+    except (TypeError, OverflowError):
         raise ValueError(f"{name} must be numbers in an array of shape (N, 2), got {short(points)}") from None
     if array.size == 0 and array.ndim <= 2:
         return np.empty((0, 2))
@@ -84,15 +92,37 @@ def as_positive(value: Any, name: str, *, zero: bool = False) -> float:
     3.0
     """
     rule = "a finite number >= 0" if zero else "a finite number > 0"
-    try:
-        if isinstance(value, (str, bytes, bool, np.bool_)):
-            raise TypeError  # float() would take "0.1" and True
-        number = float(value)
-    except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"{name} must be {rule}, got {short(value)}") from None
+    number = _as_number(value, name, rule)
     if not np.isfinite(number) or number < 0 or (number == 0 and not zero):
         raise ValueError(f"{name} must be {rule}, got {number:g}")
+    if number > FARTHEST:
+        raise ValueError(f"{name} must be {rule} and at most {FARTHEST:g}, got {number:g}")
     return number
+
+
+def as_share(value: Any, name: str, rule: str = "a share from 0 to 1") -> float:
+    """Return a float from 0 to 1, or say in one sentence what is wrong.
+
+    >>> as_share("0.1", "left_over")
+    Traceback (most recent call last):
+        ...
+    ValueError: left_over must be a share from 0 to 1, got '0.1'
+    """
+    number = _as_number(value, name, rule)
+    if not 0 <= number <= 1:
+        raise ValueError(f"{name} must be {rule}, got {number:g}")
+    return number
+
+
+def _as_number(value: Any, name: str, rule: str) -> float:
+    try:
+        if isinstance(value, (str, bytes, bool, np.bool_, np.timedelta64)) or value is np.ma.masked:
+            raise TypeError  # float() would take "0.1", True, and a masked value with a warning
+        if isinstance(value, np.ndarray) and (value.ndim or value.dtype.kind not in "fiu"):
+            raise TypeError
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{name} must be {rule}, got {short(value)}") from None
 
 
 def as_count(value: Any, name: str, least: int = 1) -> int:
@@ -114,8 +144,8 @@ def as_poses(poses: ArrayLike) -> Floats:
     (1, 3)
     """
     try:
-        array = _as_floats(poses)
-    except (TypeError, ValueError, OverflowError):
+        array = as_floats(poses, "poses")
+    except (TypeError, OverflowError):
         raise ValueError("poses must be numbers in an array of shape (P, 3): x, y, heading") from None
     array = array.reshape(-1, 3) if array.size == 0 or array.shape == (3,) else array
     if array.ndim != 2 or array.shape[1] != 3:
@@ -123,21 +153,40 @@ def as_poses(poses: ArrayLike) -> Floats:
     return _all_finite(array, "poses")
 
 
-def _all_finite(array: NDArray[np.float64], name: str) -> Floats:
-    """Return the array, or refuse it for its first row that is not finite."""
-    finite = np.isfinite(array)
-    if not finite.all():  # at once: row by row takes ten times as long
-        row = int(np.argmin(finite.all(axis=1)))
-        raise ValueError(f"{name} must be finite, got {tuple(array[row].tolist())} in row {row}")
+def _all_finite(array: Floats, name: str) -> Floats:
+    """Return the array, or refuse it for its first row that is not finite, or too far out to be squared."""
+    fine = np.abs(array) <= FARTHEST
+    if not fine.all():  # at once: row by row takes ten times as long
+        row = int(np.argmin(fine.all(axis=1)))
+        rule = f"finite and at most {FARTHEST:g}" if np.isfinite(array[row]).all() else "finite"
+        raise ValueError(f"{name} must be {rule}, got {tuple(array[row].tolist())} in row {row}")
     return array
 
 
-def _as_floats(values: Any) -> Floats:
-    """Return values as an array of floats; a TypeError, ValueError or OverflowError says that they are none."""
-    array = np.asarray(values)
-    if array.dtype.kind in "USc":
-        raise TypeError  # numpy would read "1.5" as a number, and drop the imaginary part of a complex one
-    return np.asarray(array, dtype=float)
+def as_floats(values: Any, name: str) -> Floats:
+    """Return values as an array of floats of any shape; a TypeError or OverflowError says that they are no numbers.
+
+    >>> as_floats(np.ma.array([1.0, 2.0], mask=[False, True]), "ranges")
+    Traceback (most recent call last):
+        ...
+    ValueError: ranges must have no masked values, got 1 of them: leave them out, as compressed() does
+    """
+    try:
+        array = np.asarray(values)
+    except (ValueError, RecursionError):  # rows of different lengths; too deep
+        raise TypeError from None
+    parts = values if isinstance(values, (list, tuple)) else [values]
+    if masked := sum(int(np.ma.getmaskarray(part).sum()) for part in parts if isinstance(part, np.ma.MaskedArray)):
+        rule = f"{name} must have no masked values, got {masked} of them"
+        raise ValueError(f"{rule}: leave them out, as compressed() does")
+    if array.dtype.kind == "O" and not all(isinstance(v, Number) and not isinstance(v, bool) for v in array.flat):
+        raise TypeError
+    if array.size and array.dtype.kind not in "fiuO":
+        raise TypeError  # numpy would read "1.5", True and a date as numbers, and drop what is imaginary
+    try:
+        return np.asarray(array, dtype=float)
+    except ValueError:
+        raise TypeError from None
 
 
 def as_rng(rng: Any) -> np.random.Generator:
@@ -147,9 +196,32 @@ def as_rng(rng: Any) -> np.random.Generator:
     np.True_
     """
     try:
-        return np.random.default_rng(rng)
-    except (TypeError, ValueError):
+        if isinstance(rng, (bool, np.bool_, np.random.RandomState)):
+            raise TypeError
+        generator = np.random.default_rng(rng)
+        if not hasattr(generator.bit_generator.seed_seq, "spawn"):  # each stage gets a generator of its own
+            raise TypeError
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"rng must be a whole number >= 0 or a numpy Generator, got {short(rng)}") from None
+    return generator
+
+
+def limit(n: float, most: int, rule: str, cause: str = "") -> None:
+    """Refuse work that would grow without limit before it begins, and name the likely cause.
+
+    >>> limit(66_000_000, 1_000_000, "a board must have at most {} way-points", "is the map in millimetres?")
+    Traceback (most recent call last):
+        ...
+    ValueError: a board must have at most 1,000,000 way-points, got 66,000,000; is the map in millimetres?
+    """
+    if not n <= most:
+        got = f"{n:,.0f}" if n < 1e15 else short(n)
+        raise ValueError(f"{rule.format(f'{most:,}')}, got {got}{'; ' if cause else ''}{cause}")
+
+
+def doubt(sentence: str, depth: int) -> None:
+    """Tell, as a warning, of a value that is most likely wrong; ``depth`` functions lie between here and the user."""
+    warnings.warn(sentence, LikelyWrong, stacklevel=depth + 2)
 
 
 def check_type(value: Any, kind: type | tuple[type, ...], rule: str) -> None:
@@ -165,6 +237,18 @@ def check_type(value: Any, kind: type | tuple[type, ...], rule: str) -> None:
 
 
 def short(value: Any) -> str:
-    """Return a value as text, cut to the length of a line."""
-    text = repr(value)
+    """Return a value as text on one line, cut to its length, however large or deep the value is.
+
+    >>> short(10**400) == short(10**300) == "1" + 56 * "0" + "..."
+    True
+    """
+    try:
+        text = _BRIEF.repr(value).replace("\n", " ")
+    except (ValueError, RecursionError):  # Python writes no whole number of more than 4,300 digits
+        text = f"{type(value).__name__} too long to show"
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+_BRIEF = reprlib.Repr()  # what is cut off is not even looked at
+_BRIEF.maxlevel, _BRIEF.maxstring, _BRIEF.maxlong, _BRIEF.maxother = 8, 2000, 2000, 2000
+_BRIEF.maxlist = _BRIEF.maxtuple = _BRIEF.maxdict = _BRIEF.maxset = 30

@@ -22,15 +22,33 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from .arguments import Floats, as_count, as_poses, as_positive, as_rng, check_type
+from .arguments import (
+    FARTHEST,
+    Bools,
+    Floats,
+    as_count,
+    as_floats,
+    as_poses,
+    as_positive,
+    as_rng,
+    as_share,
+    check_type,
+    doubt,
+    limit,
+)
 from .raycast import cast
 from .world import World
 
 BLOCK = 10_000  # scans that are worked on at a time: 8 MB of ranges
+MOST_BEAMS = 1_000_000
+SCAN_SHAPES = {"poses": "(P, 3)", "angles": "(B,)", "ranges": "(P, B)", "inside": "(P,)"}
+# No scanner reaches a kilometre, no sensor's bearings go round twice, and no robot turns by 90 radians to the digit.
+FARTHEST_HIT, TWICE_ROUND, DEGREES = 1000.0, 4 * np.pi, 5.0
 
 
 @dataclass(frozen=True)
@@ -73,16 +91,18 @@ class Lidar:
     spurious: float = 0.0
 
     def __post_init__(self) -> None:
-        as_count(self.beams, "beams")
-        for name in ("range_min", "noise_std", "dropout", "spurious"):
+        limit(as_count(self.beams, "beams"), MOST_BEAMS, "beams must be at most {}")
+        for name in ("range_min", "noise_std"):
             as_positive(getattr(self, name), name, zero=True)
         for name in ("range_max", "period"):
             as_positive(getattr(self, name), name)
+        for name in ("dropout", "spurious"):
+            as_share(getattr(self, name), name)
         if self.range_min >= self.range_max:
             raise ValueError(f"range_min must be below range_max, got {self.range_min:g} and {self.range_max:g}")
-        for name in ("dropout", "spurious"):
-            if getattr(self, name) > 1:
-                raise ValueError(f"{name} must be a share from 0 to 1, got {getattr(self, name):g}")
+        for name, least in (("noise_std", self.range_max), ("range_max", FARTHEST_HIT)):
+            if getattr(self, name) > least:
+                doubt(f"{name} is {getattr(self, name):g} m: is it in millimetres?", depth=2)
 
     @property
     def angle_increment(self) -> float:
@@ -106,9 +126,20 @@ class Scans:
     angles : array, shape (B,)
         Bearing of each beam from the heading, radians.
     ranges : array, shape (P, B)
-        Measured distances in metres; ``inf`` where a beam met nothing in range.
+        Measured distances in metres; ``inf`` or 0 where a beam met nothing. ``as_ranges`` makes them of what a
+        sensor's driver writes.
     inside : array of bool, shape (P,)
         Poses that lie in a shape: they see nothing.
+
+    Raises
+    ------
+    ValueError
+        If an array is none of these, a pose or an angle is not finite, or a range is NaN or below zero.
+
+    Warns
+    -----
+    LikelyWrong
+        If headings or angles look like degrees, or ranges like millimetres.
 
     Examples
     --------
@@ -120,12 +151,34 @@ class Scans:
     poses: Floats
     angles: Floats
     ranges: Floats
-    inside: NDArray[np.bool_]
+    inside: Bools
+
+    def __post_init__(self) -> None:
+        arrays = {field: _as_array(field, getattr(self, field)) for field in SCAN_SHAPES}
+        poses, angles, ranges, _ = arrays.values()
+        shapes = [array.shape for array in arrays.values()]
+        if ranges.ndim != 2 or shapes != [(len(ranges), 3), ranges.shape[1:], ranges.shape, ranges.shape[:1]]:
+            rule = ", ".join(f"{field} {shape}" for field, shape in SCAN_SHAPES.items())
+            raise ValueError(f"shapes must be {rule}, got {', '.join(map(str, shapes))}")
+        for field, values, right, rule in (
+            ("poses", poses, np.abs(poses) <= FARTHEST, "finite"),
+            ("angles", angles, np.abs(angles) <= FARTHEST, "finite"),
+            ("ranges", ranges, ranges >= 0, ">= 0, or inf for no hit"),
+        ):
+            if not right.all():
+                raise ValueError(f"{field} must be {rule}, got {values[~right][0]:g}")
+        vars(self).update(arrays)
+        _doubt_headings(poses, depth=3)
+        if (largest := np.abs(angles).max(initial=0.0)) > TWICE_ROUND:
+            doubt(f"angles reach {largest:g} rad: are they in degrees?", depth=2)
+        if (largest := ranges.max(initial=0.0, where=self.hits)) > FARTHEST_HIT:
+            doubt(f"ranges reach {largest:g} m: are they in millimetres?", depth=2)
 
     @property
-    def hits(self) -> NDArray[np.bool_]:
-        """Which beams met something, shape (P, B)."""
-        return np.isfinite(self.ranges)
+    def hits(self) -> Bools:
+        """Which beams met something, shape (P, B): those that read more than 0, and not infinity."""
+        hits: Bools = (self.ranges > 0) & (self.ranges < np.inf)
+        return hits
 
     def points(self) -> Floats:
         """Return where the beams hit, shape (N, 2), metres, world frame; pose by pose, beam by beam."""
@@ -141,7 +194,56 @@ class Scans:
         """Return some of the scans: ``scans[5:6]`` is the sixth alone."""
         if isinstance(which, (int, np.integer)):
             which = [int(which)]
-        return Scans(self.poses[which], self.angles, self.ranges[which], self.inside[which])
+        return _checked_before(self.poses[which], self.angles, self.ranges[which], self.inside[which])
+
+
+def as_ranges(ranges: ArrayLike, range_max: float = np.inf) -> Floats:
+    """Return what a sensor's driver writes as ranges, of the same shape: ``inf`` for all that is no hit.
+
+    A hit lies above 0 and below the sensor's greatest range. NaN, 0, negative numbers, infinity and the greatest range
+    itself are what drivers write for a beam that met nothing, or went wrong.
+
+    Examples
+    --------
+    >>> as_ranges([0.2, 0.0, float("nan"), -1.0, 81.83, 81.82], range_max=81.83).tolist()
+    [0.2, inf, inf, inf, inf, 81.82]
+    """
+    values = _as_array("ranges", ranges)
+    return np.where((values > 0) & (values < range_max), values, np.inf)
+
+
+def check_scan_type(field: str, dtype: DTypeLike) -> None:
+    """Refuse a type that does not hold what a field of scans holds."""
+    kinds, rule = ("b", "true and false") if field == "inside" else ("fiu", "numbers")
+    if np.dtype(dtype).kind not in kinds:
+        raise ValueError(f"{field} must hold {rule}, got the type {dtype}")
+
+
+def _as_array(field: str, values: ArrayLike) -> NDArray[Any]:
+    """Return the values of a field of scans as an array of its own type."""
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise ValueError(
+            f"{field} must be an array of shape {SCAN_SHAPES[field]}, got rows of several lengths"
+        ) from None
+    check_scan_type(field, array.dtype)
+    with np.errstate(over="ignore"):  # what is too large for a float becomes inf
+        return array.astype(bool) if field == "inside" else as_floats(values, field)
+
+
+def _doubt_headings(poses: Floats, depth: int) -> None:
+    """Tell of headings that look like degrees: large, and whole multiples of five."""
+    large = poses[:, 2][np.abs(poses[:, 2]) > TWICE_ROUND / 2]
+    if large.size and (large % DEGREES == 0).any():
+        doubt(f"a heading is {large[large % DEGREES == 0][0]:g} rad: is it in degrees?", depth)
+
+
+def _checked_before(poses: Floats, angles: Floats, ranges: Floats, inside: Bools) -> Scans:
+    """Return scans of arrays that fit together: checking them takes as long as a scan of one pose."""
+    scans = object.__new__(Scans)
+    vars(scans).update(poses=poses, angles=angles, ranges=ranges, inside=inside)
+    return scans
 
 
 def scan(
@@ -186,6 +288,7 @@ def scan(
     """
     check_type(world, World, "world must be a World, as in scan(world, poses)")
     poses = as_poses(poses)
+    _doubt_headings(poses, depth=2)
     return next(_scanned(world, poses, lidar, rng, max(1, len(poses))))
 
 
@@ -245,7 +348,7 @@ def _block(world: World, poses: Floats, lidar: Lidar, faults: _Faults) -> Scans:
     for start in range(0, len(poses), BLOCK):
         faults.disturb(ranges[start : start + BLOCK])
     ranges[inside] = np.inf
-    return Scans(poses, angles, ranges, inside)
+    return _checked_before(poses, angles, ranges, inside)
 
 
 class _Faults:

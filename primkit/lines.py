@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import Floats, as_count, as_points, as_positive, as_rng
+from .arguments import Floats, as_count, as_points, as_positive, as_rng, as_share
 from .ransac import Consensus, Model, run_ransac
 
 
@@ -150,8 +150,7 @@ def find_lines(
     """
     points, rng = as_points(points), as_rng(rng)
     threshold, most = as_positive(threshold, "threshold", zero=True), as_count(most, "most", least=0)
-    if not 0 <= left_over <= 1:
-        raise ValueError(f"left_over must be between 0 and 1, got {left_over:g}")
+    left_over = as_share(left_over, "left_over", "between 0 and 1")
     left = np.ones(len(points), dtype=bool)
     found: list[FoundLine] = []
     while len(found) < most and np.count_nonzero(left) > left_over * len(points):

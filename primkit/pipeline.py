@@ -24,7 +24,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arguments import Floats, as_count, as_points, as_positive, as_rng, check_type
+from .arguments import Floats, as_count, as_points, as_positive, as_rng, as_share, check_type
 from .lines import LINE, find_lines
 from .measure import Detection, as_detection, detection
 from .paper import measure_as_published
@@ -90,8 +90,7 @@ class Settings:
             as_positive(self.noise_std, "noise_std", zero=True)
         as_positive(self.line_threshold, "line_threshold", zero=True)
         as_count(self.line_trials, "line_trials")
-        if not 0 <= self.left_over <= 1:
-            raise ValueError(f"left_over must be between 0 and 1, got {self.left_over:g}")
+        as_share(self.left_over, "left_over", "between 0 and 1")
         as_count(self.circle_trials, "circle_trials")
 
 

@@ -26,9 +26,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import ROUNDING, Floats, as_count, as_points, as_positive, as_rng, check_type
+from .arguments import ROUNDING, Floats, as_count, as_points, as_positive, as_rng, as_share, check_type, limit
 
 BLOCK = 250_000  # residuals in one block of the matrix: 2 MB, about the size of a core's cache
+MOST_TRIALS = 1_000_000  # all are drawn at once: 50 MB of samples of three points
 REFITS = 10  # refitting to the inliers settles within a few rounds; ten is a safe end
 
 
@@ -122,6 +123,7 @@ def run_ransac(
     check_type(model, Model, "model must be a Model, such as lines.LINE")
     points = as_points(points)
     threshold, trials = as_positive(threshold, "threshold", zero=True), as_count(trials, "trials")
+    limit(trials, MOST_TRIALS, "trials must be at most {}", "see trials_needed")
     if score not in ("count", "truncated"):
         raise ValueError(f'score must be "count" or "truncated", got {score!r}')
     if len(points) < model.sample_size:
@@ -167,9 +169,9 @@ def trials_needed(inlier_share: float, sample_size: int, confidence: float = 0.9
     >>> trials_needed(0.5, 2), trials_needed(0.5, 3), trials_needed(1.0, 2)
     (17, 35, 1)
     """
-    if not 0 < inlier_share <= 1:
-        raise ValueError(f"inlier_share must be above 0 and at most 1, got {inlier_share:g}")
-    if not 0 < confidence < 1:
+    if as_share(inlier_share, "inlier_share", rule := "above 0 and at most 1") == 0:
+        raise ValueError(f"inlier_share must be {rule}, got 0")
+    if as_share(confidence, "confidence", "between 0 and 1") in (0, 1):
         raise ValueError(f"confidence must be between 0 and 1, got {confidence:g}")
     clean = inlier_share ** as_count(sample_size, "sample_size")
     if clean == 0:

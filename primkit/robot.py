@@ -25,7 +25,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import as_point, as_points, as_poses, as_positive, check_type, short
+from .arguments import as_point, as_points, as_poses, as_positive, check_type, limit, short
 from .world import World
 
 STEP_X = 0.15  # m between way-points along x
@@ -40,6 +40,8 @@ PERIOD = 0.1  # s: wheels keep their speeds from one scan to the next
 # m: the way is looked at in steps of this length, and the body keeps this far from everything: between two clear places
 # that lie so close together nothing can be touched.
 CLEAR = 0.0001
+# What grows with a board's side or with time, and would fill the memory: boards of 120 m, drives of two kilometres.
+MOST_PLACES, MOST_STEPS = 1_000_000, 20_000_000
 
 
 def waypoints(size: float = 1.0) -> NDArray[np.float64]:
@@ -54,6 +56,7 @@ def waypoints(size: float = 1.0) -> NDArray[np.float64]:
     [[-0.5, -0.5, 0.0], [-0.5, -0.4, 0.0], [0.4, 0.5, 0.0]]
     """
     half = as_positive(size, "size") / 2
+    check_places(size, STEP_X * STEP_Y)
     columns = np.arange(np.floor((2 * half - STOP_X) / STEP_X + 1e-9) + 1)  # 1e-9: 0.9 / 0.15 is 6, not 5.99
     rows = np.arange(np.floor(2 * half / STEP_Y + 1e-9) + 1)
     x, y = np.meshgrid(-half + STEP_X * columns, -half + STEP_Y * rows, indexing="ij")
@@ -170,9 +173,10 @@ def advance(world: World, pose: ArrayLike, wheels: ArrayLike, time: float = PERI
     (0.013, True)
     """
     check_type(world, World, "world must be a World")
-    here, speeds = _as_pose(pose), _not_too_fast(as_point(wheels, "wheels"))
+    here, speeds = _as_pose(pose), not_too_fast(as_point(wheels, "wheels"))
     seconds = as_positive(time, "time", zero=True)
     way = WHEEL * float(np.abs(speeds.sum())) / 2 * seconds
+    limit(way / CLEAR, MOST_PLACES, "a way must take at most {} steps of 0.1 mm", "is the time in seconds?")
     times = np.linspace(0, seconds, 2 + int(way / CLEAR))
     poses = moved(here, speeds, times)
     free = clearance(world, poses[:, :2]) - CLEAR
@@ -214,7 +218,9 @@ def drive(
     """
     check_type(world, World, "world must be a World")
     poses = [start_pose(world) if start is None else _as_pose(start)]
-    for speeds in _not_too_fast(as_points(wheels, "wheels")):
+    speeds_of_all = not_too_fast(as_points(wheels, "wheels"))
+    check_way(speeds_of_all, as_positive(period, "period"))
+    for speeds in speeds_of_all:
         poses.append(advance(world, poses[-1], speeds, period)[0])
     return np.array(poses)
 
@@ -232,13 +238,17 @@ def start_pose(world: World) -> NDArray[np.float64]:
     >>> start_pose(World()).tolist()
     [0.0, 0.0, 0.0]
     """
-    lines = np.arange(-np.floor(50 * world.size), np.floor(50 * world.size) + 1) / 100
-    places = np.stack(np.meshgrid(lines, lines, indexing="ij"), axis=-1).reshape(-1, 2)
-    places = places[clearance(world, places) >= CLEAR]
-    if len(places) == 0:
-        raise ValueError("the board must have room for the robot, got none between its shapes")
-    nearest = np.lexsort((places[:, 1], places[:, 0], np.hypot(*places.T).round(9)))[0]
-    return np.array([*places[nearest], 0.0])
+    half = 0.0
+    while half < world.size / 2:  # around the centre first: a large board has more places than are ever looked at
+        half = min(max(0.5, 2 * half), world.size / 2)
+        check_places(2 * half, 0.01**2)
+        lines = np.arange(-np.floor(100 * half), np.floor(100 * half) + 1) / 100
+        places = np.stack(np.meshgrid(lines, lines, indexing="ij"), axis=-1).reshape(-1, 2)
+        places = places[clearance(world, places) >= CLEAR]
+        away = np.hypot(*places.T).round(9)
+        if len(places) and (away.min() <= half or half == world.size / 2):
+            return np.array([*places[np.lexsort((places[:, 1], places[:, 0], away))[0]], 0.0])
+    raise ValueError("the board must have room for the robot, got none between its shapes")
 
 
 def _as_pose(pose: ArrayLike) -> NDArray[np.float64]:
@@ -249,7 +259,19 @@ def _as_pose(pose: ArrayLike) -> NDArray[np.float64]:
     return poses[0]
 
 
-def _not_too_fast(wheels: NDArray[np.float64]) -> NDArray[np.float64]:
+def check_places(size: float, room: float) -> None:
+    """Refuse a board that has too many places, each of which takes so much room, in square metres."""
+    rule = f"a board of {size:g} m must have at most {{}} places to stand on"
+    limit(size / room * size, MOST_PLACES, rule, "is it in millimetres?")
+
+
+def check_way(wheels: NDArray[np.float64], period: float) -> None:
+    """Refuse a drive that would take too long to follow in steps of a tenth of a millimetre."""
+    steps = WHEEL / 2 / CLEAR * period * float(np.abs(wheels.sum(axis=1)).sum())
+    limit(steps, MOST_STEPS, "a drive must take at most {} steps of 0.1 mm", "is the period in seconds?")
+
+
+def not_too_fast(wheels: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return wheel speeds, or refuse the fastest in one sentence."""
     fastest = np.abs(wheels).max(initial=0.0)
     if fastest > FASTEST:

@@ -181,10 +181,6 @@ DRIVE_FAILURES = {
         "scans must be the lidar's, with 50 beams, got 100 others",
     ),
     "no sensor": ((SEEN, [(0, 0)] * 2, 0.1), "lidar must be a Lidar, such as Lidar(), got float"),
-    "NaN": (
-        (Scans(SEEN.poses, SEEN.angles, SEEN.ranges * np.nan, SEEN.inside), [(0, 0)] * 2),
-        "ranges must be >= 0, or inf for no hit, got nan",
-    ),
 }
 
 
@@ -226,7 +222,7 @@ FILE_FAILURES = {
     ),
     "a lidar that fills the memory": (
         lines(HEAD | {"lidar": HEAD["lidar"] | {"beams": 10**12}}),
-        "a.jsonl: a drive's lidar must have at most 100,000 beams, got 1,000,000,000,000",
+        "a.jsonl: beams must be at most 1,000,000, got 1,000,000,000,000",
     ),
     "a line that is none": (lines(HEAD, "x"), "a.jsonl: line 2: must be valid JSON, got b'x'"),
     "half a line in the middle": (

@@ -24,7 +24,6 @@ Source: the form is JSON Lines, jsonlines.org.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import asdict, dataclass, fields
 from math import isfinite
@@ -33,16 +32,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arguments import Floats, as_point, as_points, as_poses, check_type, short
+from ..arguments import Floats, as_point, as_points, check_type, limit, short
 from ..lidar import Lidar, Scans
-from .files import StrPath, as_path, check_size, naming, read_whole, write_atomically
+from .files import LINE_LIMIT, StrPath, append_whole, as_path, bounded_read, lines_of, naming, opened, write_atomically
 from .values import numbers_in, parsed
 
 DRIVE_ENDINGS = (".jsonl",)
 # Most of an hour with ten scans of 100 beams a second if all of them hit something, several hours otherwise.
 DRIVE_LIMIT = 64 * 2**20
-MOST_BEAMS = 100_000  # a short line may not ask for a scan that fills the memory
-FORMAT, VERSION = "primkit drive", 1
+DRIVE_BEAMS = 100_000  # a short line may not ask for a scan that fills the memory
+DRIVE_FORMAT, DRIVE_VERSION = "primkit drive", 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,14 +106,10 @@ class DriveJournal:
         self.path, self.lidar = as_path(path, DRIVE_ENDINGS, "a drive"), lidar
         head = _head(lidar)
         try:
-            self._file = self.path.open("wb" if replace else "xb")
+            self._file = opened(self.path, "wb" if replace else "xb")
         except FileExistsError:
             rule = "is there already; load it, or record with replace=True"
             raise FileExistsError(f"{self.path.name}: {rule}") from None
-        except FileNotFoundError:
-            raise FileNotFoundError(f"{self.path.name}: there is no folder {self.path.absolute().parent}") from None
-        except OSError as error:
-            raise type(error)(f"{self.path.name}: cannot be written: {error.strerror or error}") from None
         self._size = 0
         self._write(head)
 
@@ -132,6 +127,8 @@ class DriveJournal:
         ------
         ValueError
             If it is not one scan of the journal's sensor, the journal is closed, or there is no room left.
+        OSError
+            If it cannot be written; the journal then stays as it was.
         """
         with naming(self.path.name):
             if self._file.closed:
@@ -146,9 +143,8 @@ class DriveJournal:
         self._file.close()
 
     def _write(self, line: bytes) -> None:
-        check_size(self._size + len(line), DRIVE_LIMIT)
-        self._file.write(line)
-        self._file.flush()
+        limit(self._size + len(line), DRIVE_LIMIT, "must be at most {} bytes")
+        append_whole(self._file, line, self.path)
         self._size += len(line)
 
     def __enter__(self) -> DriveJournal:
@@ -217,7 +213,7 @@ def save_drive(drive: Drive, path: StrPath) -> None:
         check_type(drive, Drive, "must be a Drive")
         lines = (_line(drive.scans, number, speeds) for number, speeds in enumerate(drive.wheels))
         data = b"".join([_head(drive.lidar), *lines])
-        check_size(len(data), DRIVE_LIMIT)
+        limit(len(data), DRIVE_LIMIT, "must be at most {} bytes")
     write_atomically(path, data)
 
 
@@ -248,17 +244,14 @@ def load_drive(path: StrPath) -> Drive:
     (0, 50)
     """
     path = as_path(path, DRIVE_ENDINGS, "a drive")
-    data = read_whole(path, DRIVE_LIMIT)
+    data = bounded_read(path, DRIVE_LIMIT)
     with naming(path.name):
-        lines = iter(data.split(b"\n")[:-1])  # behind the last end of a line there is nothing, or half a line
+        lines = lines_of(data)
         lidar = _lidar_in(next(lines, b""))
-        seen = list(_scans_in(lines, lidar))
-        poses, wheels, ranges = (
-            np.array([one[i] for one in seen], dtype=float).reshape(len(seen), n)
-            for i, n in enumerate((3, 2, lidar.beams))
-        )
-        inside = np.array([one[3] for one in seen], dtype=bool)
-        return Drive(Scans(poses, lidar.angles, ranges, inside), wheels, lidar)
+        seen = [_numbers_of(line, lidar, number) for number, line in enumerate(lines, start=2)]
+        table = np.array(seen).reshape(len(seen), 6 + lidar.beams)
+        scans = Scans(table[:, :3], lidar.angles, table[:, 6:], table[:, 5] == 1)
+        return Drive(scans, table[:, 3:5], lidar)
 
 
 # From a drive to lines.
@@ -267,14 +260,16 @@ def load_drive(path: StrPath) -> Drive:
 def _head(lidar: Lidar) -> bytes:
     """Return the first line of a drive's file."""
     _check_beams(lidar)
-    return _json({"format": FORMAT, "version": VERSION, "lidar": asdict(lidar)})
+    return _json({"format": DRIVE_FORMAT, "version": DRIVE_VERSION, "lidar": asdict(lidar)})
 
 
 def _line(scans: Scans, number: int, wheels: Floats) -> bytes:
     """Return one scan as a line."""
     ranges = [distance if isfinite(distance) else None for distance in scans.ranges[number].tolist()]
     pose, inside = scans.poses[number].tolist(), bool(scans.inside[number])
-    return _json({"pose": pose, "wheels": wheels.tolist(), "ranges": ranges, "inside": inside})
+    line = _json({"pose": pose, "wheels": wheels.tolist(), "ranges": ranges, "inside": inside})
+    limit(len(line), LINE_LIMIT, "a scan must take at most {} bytes")
+    return line
 
 
 def _json(value: Any) -> bytes:
@@ -285,17 +280,12 @@ def _json(value: Any) -> bytes:
 def _check_scans(scans: Scans, lidar: Lidar) -> None:
     """Refuse what is not scans of this sensor."""
     check_type(scans, Scans, "scans must be Scans, as scan(world, poses) returns them")
-    as_poses(scans.poses)
     if not np.array_equal(scans.angles, lidar.angles) or scans.ranges.shape != (len(scans), lidar.beams):
         raise ValueError(f"scans must be the lidar's, with {lidar.beams} beams, got {scans.ranges.shape[-1]} others")
-    if not (scans.ranges >= 0).all():
-        wrong = scans.ranges[~(scans.ranges >= 0)][0]
-        raise ValueError(f"ranges must be >= 0, or inf for no hit, got {wrong:g}")
 
 
 def _check_beams(lidar: Lidar) -> None:
-    if lidar.beams > MOST_BEAMS:
-        raise ValueError(f"a drive's lidar must have at most {MOST_BEAMS:,} beams, got {lidar.beams:,}")
+    limit(lidar.beams, DRIVE_BEAMS, "a drive's lidar must have at most {} beams")
 
 
 # From lines to a drive.
@@ -306,10 +296,10 @@ def _lidar_in(line: bytes) -> Lidar:
     told = None
     with suppress(ValueError):
         told = parsed(line)
-    if not isinstance(told, dict) or told.get("format") != FORMAT:
-        raise ValueError(f'must be a drive, its first line with "format": "{FORMAT}", got {short(line[:40])}')
-    if told.get("version") != VERSION:
-        raise ValueError(f"must be a drive of version {VERSION}, got version {short(told.get('version'))}")
+    if not isinstance(told, dict) or told.get("format") != DRIVE_FORMAT:
+        raise ValueError(f'must be a drive, its first line with "format": "{DRIVE_FORMAT}", got {short(line[:40])}')
+    if told.get("version") != DRIVE_VERSION:
+        raise ValueError(f"must be a drive of version {DRIVE_VERSION}, got version {short(told.get('version'))}")
     lidar, names = told.get("lidar"), {field.name for field in fields(Lidar)}
     if not isinstance(lidar, dict) or set(lidar) != names:
         raise ValueError(f"lidar must have {', '.join(sorted(names))}, got {short(lidar)}")
@@ -318,12 +308,11 @@ def _lidar_in(line: bytes) -> Lidar:
     return sensor
 
 
-def _scans_in(lines: Iterator[bytes], lidar: Lidar) -> Iterator[tuple[list[float], list[float], list[float], bool]]:
-    """Yield pose, wheels, ranges and inside of each line."""
-    for number, line in enumerate(lines, start=2):
-        with naming(f"line {number}"):
-            told = parsed(line)
-            check_type(told, dict, "must be a scan")
-            check_type(told.get("inside"), bool, "inside must be true or false")
-            pose, wheels = numbers_in(told, "pose", 3), numbers_in(told, "wheels", 2)
-            yield pose, wheels, numbers_in(told, "ranges", lidar.beams, least=0.0), told["inside"]
+def _numbers_of(line: bytes, lidar: Lidar, number: int) -> Floats:
+    """Return pose, wheels, inside (1 or 0) and ranges of a scan, one after the other, shape (6 + B,)."""
+    with naming(f"line {number}"):
+        told = parsed(line)
+        check_type(told, dict, "must be a scan")
+        check_type(told.get("inside"), bool, "inside must be true or false")
+        pose, wheels = numbers_in(told, "pose", 3), numbers_in(told, "wheels", 2)
+        return np.array([*pose, *wheels, told["inside"], *numbers_in(told, "ranges", lidar.beams, least=0.0)])

@@ -24,13 +24,13 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import check_type, limit
 from ..shapes import SAME_CORNER, Circle, Polygon, Shape
 from ..world import World
-from .files import StrPath, as_path, check_size, naming, read_whole, write_atomically
+from .files import TEXT_LIMIT, StrPath, as_path, bounded_read, naming, write_atomically
 
 MAP_ENDINGS = (".geojson", ".json")
-# A shape takes about 300 bytes: room for 50,000 of them, and no file can fill the memory when it is parsed.
-MAP_LIMIT = 16 * 2**20
+MAP_LIMIT = TEXT_LIMIT  # a shape takes about 300 bytes: room for 50,000 of them
 
 
 def save_world(world: World, path: StrPath, *, properties: Sequence[Mapping[str, Any]] | None = None) -> None:
@@ -74,8 +74,7 @@ def save_world(world: World, path: StrPath, *, properties: Sequence[Mapping[str,
     """
     path = as_path(path, MAP_ENDINGS, "a map")
     with naming(path.name):
-        if not isinstance(world, World):
-            raise ValueError(f"a map must be a World, got {type(world).__name__}")
+        check_type(world, World, "a map must be a World")
         n = len(world.shapes)
         extras: list[Mapping[str, Any]] = [{}] * n if properties is None else list(properties)
         if len(extras) != n:
@@ -88,7 +87,7 @@ def save_world(world: World, path: StrPath, *, properties: Sequence[Mapping[str,
     text = f'{{\n  "type": "FeatureCollection",\n  "size": {world.size!r},\n  "features": {listed}\n}}\n'
     data = text.encode()
     with naming(path.name):
-        check_size(len(data), MAP_LIMIT)
+        limit(len(data), MAP_LIMIT, "must be at most {} bytes")
     write_atomically(path, data)
 
 
@@ -131,7 +130,7 @@ def load_world(path: StrPath) -> World:
     World(shapes=(Polygon([(0, 0), (1, 0), (0, 1)]),), size=1.0)
     """
     path = as_path(path, MAP_ENDINGS, "a map")
-    data = read_whole(path, MAP_LIMIT)
+    data = bounded_read(path, MAP_LIMIT)
     with naming(path.name):
         document = _parsed(data)
         features = _features(document)

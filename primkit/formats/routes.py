@@ -15,15 +15,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arguments import Floats, as_points, as_poses, as_positive, check_type, short
-from ..robot import FASTEST, PERIOD, drive
+from ..arguments import Floats, as_points, as_poses, as_positive, check_type, limit, short
+from ..robot import PERIOD, check_way, drive, not_too_fast
 from ..world import World
-from .files import StrPath, as_path, check_size, naming, read_whole, write_atomically
+from .files import StrPath, as_path, bounded_read, naming, write_atomically
 from .values import numbers_in, parsed
 
 ROUTE_ENDINGS = (".json",)
 ROUTE_LIMIT = 2 * 2**20  # bytes: hours of driving
-FORMAT, VERSION = "primkit route", 1
+ROUTE_FORMAT, ROUTE_VERSION = "primkit route", 1
 ON_A_LINE = 8  # pairs of speeds
 
 
@@ -58,12 +58,16 @@ class Route:
     period: float = PERIOD
 
     def __post_init__(self) -> None:
-        start, wheels = as_poses(self.start), as_points(self.wheels, "wheels")
+        start, wheels, period = (
+            as_poses(self.start),
+            as_points(self.wheels, "wheels"),
+            as_positive(self.period, "period"),
+        )
         if len(start) != 1:
             raise ValueError(f"start must be three finite numbers (x, y, heading), got {short(self.start)}")
-        if (fastest := np.abs(wheels).max(initial=0.0)) > FASTEST:
-            raise ValueError(f"wheels must turn at {FASTEST:g} rad/s at most, got {fastest:g}")
-        for name, value in (("start", start[0]), ("wheels", wheels), ("period", as_positive(self.period, "period"))):
+        not_too_fast(wheels)
+        check_way(wheels, period)
+        for name, value in (("start", start[0]), ("wheels", wheels), ("period", period)):
             object.__setattr__(self, name, value)
 
     def poses(self, world: World) -> Floats:
@@ -96,9 +100,11 @@ def save_route(route: Route, path: StrPath) -> None:
         check_type(route, Route, "must be a Route")
         pairs = [json.dumps(pair) for pair in route.wheels.tolist()]
         lines = [", ".join(pairs[i : i + ON_A_LINE]) for i in range(0, len(pairs), ON_A_LINE)]
-        head = json.dumps({"format": FORMAT, "version": VERSION, "period": route.period, "start": route.start.tolist()})
+        head = json.dumps(
+            {"format": ROUTE_FORMAT, "version": ROUTE_VERSION, "period": route.period, "start": route.start.tolist()}
+        )
         data = f'{head[:-1]},\n"wheels": [\n' + ",\n".join(lines) + "\n]}\n"
-        check_size(len(data), ROUTE_LIMIT)
+        limit(len(data), ROUTE_LIMIT, "must be at most {} bytes")
     write_atomically(path, data)
 
 
@@ -126,13 +132,13 @@ def load_route(path: StrPath) -> Route:
     [[1.5, 2.0]]
     """
     path = as_path(path, ROUTE_ENDINGS, "a route")
-    data = read_whole(path, ROUTE_LIMIT)
+    data = bounded_read(path, ROUTE_LIMIT)
     with naming(path.name):
         told = parsed(data)
-        if not isinstance(told, dict) or told.get("format") != FORMAT:
-            raise ValueError(f'must be a route, with "format": "{FORMAT}", got {short(told)}')
-        if told.get("version") != VERSION:
-            raise ValueError(f"must be a route of version {VERSION}, got version {short(told.get('version'))}")
+        if not isinstance(told, dict) or told.get("format") != ROUTE_FORMAT:
+            raise ValueError(f'must be a route, with "format": "{ROUTE_FORMAT}", got {short(told)}')
+        if told.get("version") != ROUTE_VERSION:
+            raise ValueError(f"must be a route of version {ROUTE_VERSION}, got version {short(told.get('version'))}")
         check_type(told.get("wheels"), list, "wheels must be a list of pairs")
         wheels = [numbers_in({"each of the wheels": pair}, "each of the wheels", 2) for pair in told["wheels"]]
         return Route(

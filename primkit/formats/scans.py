@@ -18,22 +18,22 @@ A file by a stranger is only ever data: nothing in it is run, and it cannot unpa
 from __future__ import annotations
 
 import io
+import math
 import warnings
-import zipfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..lidar import Scans
-from .files import StrPath, as_path, check_size, naming, read_whole, write_atomically
+from ..arguments import check_type, limit
+from ..lidar import SCAN_SHAPES, Scans, check_scan_type
+from .files import StrPath, as_path, bounded_read, naming, open_archive, unpacked, write_atomically
 
 SCAN_ENDINGS = (".npz",)
-# Two hours of driving, ten scans of 100 beams a second; holds for the archive and for what it unpacks to.
+# Two hours of driving, ten scans of 100 beams a second; holds for the archive, and for the floats that it becomes.
 SCANS_LIMIT = 64 * 2**20
-SCAN_SHAPES = {"poses": "(P, 3)", "angles": "(B,)", "ranges": "(P, B)", "inside": "(P,)"}
 
 
 def save_scans(scans: Scans, path: StrPath) -> None:
@@ -67,16 +67,13 @@ def save_scans(scans: Scans, path: StrPath) -> None:
     """
     path = as_path(path, SCAN_ENDINGS, "a file of scans")
     with naming(path.name):
-        if not isinstance(scans, Scans):
-            raise ValueError(f"must be Scans, got {type(scans).__name__}")
-        checked = _as_scans({field: np.asarray(getattr(scans, field)) for field in SCAN_SHAPES})
+        check_type(scans, Scans, "must be Scans")
+        arrays = {field: getattr(scans, field) for field in SCAN_SHAPES}
+        _check_room(arrays)
         buffer = io.BytesIO()
-        np.savez_compressed(buffer, **vars(checked))
-        with zipfile.ZipFile(buffer) as archive:
-            unpacked = sum(member.file_size for member in archive.infolist())
-        data = buffer.getvalue()
-        check_size(max(unpacked, len(data)), SCANS_LIMIT)
-    write_atomically(path, data)
+        np.savez_compressed(buffer, **arrays)
+        limit(buffer.tell(), SCANS_LIMIT, "must be at most {} bytes")
+    write_atomically(path, buffer.getvalue())
 
 
 def load_scans(path: StrPath) -> Scans:
@@ -107,30 +104,41 @@ def load_scans(path: StrPath) -> Scans:
     (0, 100)
     """
     path = as_path(path, SCAN_ENDINGS, "a file of scans")
-    data = read_whole(path, SCANS_LIMIT)
+    data = bounded_read(path, SCANS_LIMIT)
     with naming(path.name):
-        return _as_scans(_unpacked(data))
+        return Scans(**_arrays_in(data))
 
 
-def _unpacked(data: bytes) -> dict[str, NDArray[Any]]:
+def _check_room(arrays: dict[str, NDArray[Any]]) -> None:
+    limit(sum(8 * array.size for array in arrays.values()), SCANS_LIMIT, "must unpack to at most {} bytes")
+
+
+def _arrays_in(data: bytes) -> dict[str, NDArray[Any]]:
     """Return the arrays of scans in an .npz archive's bytes; nothing in it is ever run."""
+    arrays: dict[str, NDArray[Any]] = {}
     with _refusing_damage():
-        archive = zipfile.ZipFile(io.BytesIO(data))
-    with archive:
-        for field in SCAN_SHAPES:
-            if f"{field}.npy" not in archive.namelist():
-                raise ValueError(f"must hold the arrays {', '.join(SCAN_SHAPES)}, got none called {field}")
-        members = {field: archive.getinfo(f"{field}.npy") for field in SCAN_SHAPES}
-        check_size(sum(member.file_size for member in members.values()), SCANS_LIMIT)  # small can unpack to huge
+        archive = open_archive(data)
+    for field in SCAN_SHAPES:
+        name = f"{field}.npy"
+        if name not in archive.namelist():
+            raise ValueError(f"must hold the arrays {', '.join(SCAN_SHAPES)}, got none called {field}")
+        limit(archive.getinfo(name).file_size, SCANS_LIMIT, "must unpack to at most {} bytes")
         with _refusing_damage():
-            return {field: _array_of(archive.read(member)) for field, member in members.items()}
+            arrays[field] = _array_of(unpacked(archive, name, SCANS_LIMIT))
+        check_scan_type(field, arrays[field].dtype)
+        _check_room(arrays)  # what takes a byte here takes eight as a float
+    return arrays
 
 
 def _array_of(data: bytes) -> NDArray[Any]:
-    """Return the array in an .npy file's bytes."""
-    with warnings.catch_warnings(action="ignore"):  # of headers by old versions of NumPy, which are read all the same
-        array: NDArray[Any] = np.lib.format.read_array(io.BytesIO(data), allow_pickle=False)
-    return array
+    """Return the array in an .npy file's bytes, without a copy: what its head says makes no room by itself."""
+    member = io.BytesIO(data)
+    version = np.lib.format.read_magic(member)
+    head = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+    with warnings.catch_warnings(action="ignore"):  # of heads by old versions of NumPy, which are read all the same
+        shape, by_columns, dtype = head(member)
+    values = np.frombuffer(data, dtype, offset=member.tell())[: max(0, math.prod(shape))]
+    return values.reshape(shape, order="F" if by_columns else "C")
 
 
 @contextmanager
@@ -140,34 +148,3 @@ def _refusing_damage() -> Iterator[None]:
         yield
     except Exception:
         raise ValueError("must be an .npz archive of plain arrays, got one that cannot be read") from None
-
-
-def _as_scans(arrays: Mapping[str, NDArray[Any]]) -> Scans:
-    """Return scans of arrays that fit together, or say in one sentence what is wrong."""
-    _check_types(arrays)
-    _check_shapes(arrays)
-    with np.errstate(over="ignore"):  # what is too large for a float becomes inf
-        poses, angles, ranges = (arrays[field].astype(float) for field in ("poses", "angles", "ranges"))
-    for field, values, right, rule in (
-        ("poses", poses, np.isfinite(poses), "finite"),
-        ("angles", angles, np.isfinite(angles), "finite"),
-        ("ranges", ranges, ranges >= 0, ">= 0, or inf for no hit"),
-    ):
-        if not right.all():
-            raise ValueError(f"{field} must be {rule}, got {values[~right][0]:g}")
-    return Scans(poses, angles, ranges, arrays["inside"])
-
-
-def _check_types(arrays: Mapping[str, NDArray[Any]]) -> None:
-    for field, array in arrays.items():
-        kinds, rule = ("b", "true and false") if field == "inside" else ("fiu", "numbers")
-        if array.dtype.kind not in kinds:
-            raise ValueError(f"{field} must hold {rule}, got the type {array.dtype}")
-
-
-def _check_shapes(arrays: Mapping[str, NDArray[Any]]) -> None:
-    shapes = [arrays[field].shape for field in SCAN_SHAPES]
-    ranges = arrays["ranges"].shape  # (P, B): the others follow from it
-    if len(ranges) != 2 or shapes != [(ranges[0], 3), ranges[1:], ranges, ranges[:1]]:
-        rule = ", ".join(f"{field} {shape}" for field, shape in SCAN_SHAPES.items())
-        raise ValueError(f"shapes must be {rule}, got {', '.join(map(str, shapes))}")

@@ -14,9 +14,10 @@ import sys
 from math import inf
 from typing import Any
 
-from ..arguments import short
+from ..arguments import limit, short
+from .files import TEXT_LIMIT
 
-MOST = sys.float_info.max
+LARGEST = sys.float_info.max
 
 
 def parsed(data: bytes) -> Any:
@@ -27,6 +28,7 @@ def parsed(data: bytes) -> Any:
         ...
     ValueError: must be valid JSON, got b'{'
     """
+    limit(len(data), TEXT_LIMIT, "must be at most {} bytes")
     try:
         return json.loads(data)
     except (ValueError, RecursionError, MemoryError):  # no JSON, no UTF-8, a number of thousands of digits, too deep
@@ -48,7 +50,9 @@ def numbers_in(told: dict[str, Any], name: str, n: int, least: float = -inf) -> 
         raise ValueError(f"{rule}, got {f'{len(values)} of them' if isinstance(values, list) else short(values)}")
     for value in values:
         # Compared, not converted: a whole number may have hundreds of digits.
-        number = isinstance(value, (int, float)) and not isinstance(value, bool) and max(least, -MOST) <= value <= MOST
+        number = (
+            isinstance(value, (int, float)) and not isinstance(value, bool) and max(least, -LARGEST) <= value <= LARGEST
+        )
         if not (number or (value is None and nothing)):
             raise ValueError(f"{rule}, got {short(value)}")
     return [inf if value is None else float(value) for value in values]

@@ -48,7 +48,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arguments import ROUNDING, Bools, Floats, Ints, as_poses, check_type
+from ..arguments import ROUNDING, Bools, Floats, Ints, as_poses, check_type, limit
 from ..shapes import Circle, Polygon
 from ..world import World
 from .fan import CORNER_HIT, TURN, Fan
@@ -60,6 +60,7 @@ Hits = tuple[Ints, Floats, Ints]  # where in the table of ranges, how far; and t
 # cache, and which the system does not take back between two blocks (getting them again would cost as much as all the
 # computing).
 PAIRS_PER_BLOCK, BEAMS_PER_BLOCK = 16_384, 200_000
+MOST_RANGES = 100_000_000  # at once: 800 MB
 # From a robot on a side, in line with it, rounding could turn a beam past the quarter turn, where the tangent changes
 # its sign: it would hit the side's other end. So no beam of a side is nearer to the quarter turn than this [rad].
 EDGE_ON = 2 * CORNER_HIT
@@ -112,6 +113,9 @@ def cast(
 
     A beam whose nearest hit lies outside the limits, both included, reads ``inf``.
     """
+    limit(
+        len(poses) * len(angles), MOST_RANGES, "a scan must have at most {} ranges", "scan_blocks takes a few at a time"
+    )
     scene, fan = _scene(world, float(range_max) + ROUNDING), _fan(angles.tobytes())
     ranges, inside = np.empty((len(poses), fan.size)), np.zeros(len(poses), dtype=bool)
     step = max(1, min(PAIRS_PER_BLOCK // max(1, scene.most), BEAMS_PER_BLOCK // fan.size))
