@@ -26,7 +26,7 @@ from primkit.course.grading import Mark, OutOfTime, Part, Task, personal_truth
 from primkit.course.grading.mark import Row
 from primkit.course.personal import personal_scans
 from primkit.evaluation import Report
-from primkit.shapes import KINDS
+from primkit.shapes import PRIMITIVES
 
 from ..parts import Fault, shown
 
@@ -230,7 +230,7 @@ OWN_FAULTS = (
     ),
     Fault(
         "The numbers of sides are wrong: does a corner count as a short side, or a side as two?",
-        when=lambda cases: all(len(kinds_of(c)) == 4 and sorted(kinds_of(c)) != sorted(KINDS) for c in cases),
+        when=lambda cases: all(len(kinds_of(c)) == 4 and sorted(kinds_of(c)) != sorted(PRIMITIVES) for c in cases),
         name="sides miscounted",
     ),
     Fault(
