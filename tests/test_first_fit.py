@@ -10,10 +10,9 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 import primkit as pk
-from primkit import measure
 from primkit.robust import candidates as explain
+from primkit.robust import choice, regroup
 from primkit.robust import first_fit as glance
-from primkit.robust import regroup
 from primkit.robust.candidates import candidates
 from primkit.robust.first_fit import APART, BENT, at_a_glance, at_another_glance
 from primkit.robust.scatter import LEAST_SPREAD, spread_across
@@ -128,8 +127,8 @@ def test_the_order_of_the_points_leaves_no_trace_on_the_kind():
 
 def test_rivals_are_fitted_when_the_margin_is_asked_for_and_only_once(monkeypatch):
     fitted = []
-    real = measure.candidates
-    monkeypatch.setattr(measure, "candidates", lambda *a, **k: fitted.append(1) or real(*a, **k))
+    real = choice.candidates
+    monkeypatch.setattr(choice, "candidates", lambda *a, **k: fitted.append(1) or real(*a, **k))
     points = points_of(pk.World([pk.Circle((0.1, 0.0), 0.06)]))
     (found,) = pk.find_shapes(points, rng=0)
     assert fitted == []
@@ -242,8 +241,8 @@ def test_a_growing_group_is_not_looked_at_anew(monkeypatch):
 
 def test_how_sure_numbers_are_is_worked_out_when_it_is_asked_for_and_only_once(monkeypatch):
     asked = []
-    real = measure.certainty
-    monkeypatch.setattr(measure, "certainty", lambda *a, **k: asked.append(1) or real(*a, **k))
+    real = choice.certainty
+    monkeypatch.setattr(choice, "certainty", lambda *a, **k: asked.append(1) or real(*a, **k))
     (found,) = pk.find_shapes(points_of(pk.World([pk.Circle((0.1, 0.0), 0.06)])), rng=0)
     assert asked == []
     std = found.dimension_std

@@ -281,7 +281,7 @@ def test_the_names_that_belong_to_no_task_are_the_program_s_own():
     names = re.findall(r"^\| (.+?) \| .+ \| .+ \|$", table, re.MULTILINE)[1:]
     code = "".join(
         (ROOT / "primkit" / path).read_text(encoding="utf-8")
-        for path in ("checks/answer.py", "grading/task.py", "teaching/overview.py")
+        for path in ("checks/answer.py", "course/grading/task.py", "course/overview.py")
     )
     assert len(names) > 4
     assert [name for name in names if f'"{name.removesuffix("...").strip()}' not in code] == []

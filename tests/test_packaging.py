@@ -56,7 +56,7 @@ def test_a_wheel_has_the_scene_s_front_end() -> None:
     wheel = tool["hatch"]["build"]["targets"]["wheel"]
     assert "primkit" in wheel["only-include"]
     assert "exclude" not in wheel
-    front_end = [f"primkit/widgets/{name}" for name in ("board.js", "hand.js", "scene.js", "replay.js", "scene.css")]
+    front_end = [f"primkit/scene/{name}" for name in ("board.js", "hand.js", "scene.js", "replay.js", "scene.css")]
     assert all((ROOT / name).is_file() for name in front_end)
     ignored = (ROOT / ".gitignore").read_text(encoding="utf-8").splitlines()
     rules = [line.strip("/") for line in ignored if line and not line.startswith("#")]

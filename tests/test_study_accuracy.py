@@ -11,8 +11,7 @@ import pytest
 from scipy.stats import binomtest
 
 from primkit.__main__ import main
-from primkit.driving import wander
-from primkit.driving.wander import CLEARANCE, EDGE_MARGIN, PERIOD_WAY, TURN_CHOICES
+from primkit.driving.wander import CLEARANCE, EDGE_MARGIN, PERIOD_WAY, TURN_CHOICES, wander
 from primkit.evaluation import evaluate
 from primkit.grid import Grid
 from primkit.lidar import Lidar, scan
