@@ -200,7 +200,7 @@ def test_the_wheel_holds_no_solution(tmp_path):
     assert find_leaks([wheel], SECRETS) == []
     with zipfile.ZipFile(wheel) as archive:
         assert [name for name in archive.namelist() if "grader" in name or name.endswith(".ipynb")] == []
-        assert "primkit/teaching/leaks.py" in archive.namelist()
+        assert "primkit/course/leaks.py" in archive.namelist()
 
 
 # --- the command --------------------------------------------------------------------------------------------

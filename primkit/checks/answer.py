@@ -37,9 +37,9 @@ Verdict = Literal["not attempted", "wrong", "error", "right"]
 
 SEED = 20  # the same cases for everybody, on every run
 
-SIGNS: dict[Verdict, str] = {"not attempted": "○", "wrong": "✗", "error": "!", "right": "✓"}
+VERDICT_SIGNS = {"not attempted": "○", "wrong": "✗", "error": "!", "right": "✓"}
 # Okabe and Ito's colours, dark enough for letters; the sign and the word say the same without them.
-COLORS: dict[Verdict, str] = {"not attempted": "#5A5A5A", "wrong": "#A34700", "error": "#A34700", "right": "#00694D"}
+VERDICT_COLORS = {"not attempted": "#5A5A5A", "wrong": "#A34700", "error": "#A34700", "right": "#00694D"}
 
 
 @dataclass(frozen=True)
@@ -66,13 +66,13 @@ class Answer:
         return self.verdict == "right"
 
     def __repr__(self) -> str:
-        return f"{SIGNS[self.verdict]} {self.verdict}: {self.says}"
+        return f"{VERDICT_SIGNS[self.verdict]} {self.verdict}: {self.says}"
 
     def _repr_html_(self) -> str:
-        color, words = COLORS[self.verdict], escape(self.says).replace("\n", "<br>")
+        color, words = VERDICT_COLORS[self.verdict], escape(self.says).replace("\n", "<br>")
         return (
             f'<div style="border-left:4px solid {color};padding:4px 10px;line-height:1.5">'
-            f'<b style="color:{color}">{SIGNS[self.verdict]} {self.verdict}</b>: {words}</div>'
+            f'<b style="color:{color}">{VERDICT_SIGNS[self.verdict]} {self.verdict}</b>: {words}</div>'
         )
 
 
