@@ -26,7 +26,7 @@ COMMANDS = {
     "study": (many.study, many.STUDY_TEXT, many.STUDY_EXAMPLES, many.study_options),
     "accuracy": (many.accuracy, many.ACCURACY_TEXT, many.ACCURACY_EXAMPLES, many.accuracy_options),
     "make-map": (board.make_map, board.MAKE_TEXT, board.MAKE_EXAMPLES, board.make_map_options),
-    "teach": (teach.teach, teach.TEXT, teach.EXAMPLES, teach.teach_options),
+    "teach": (teach.teach, teach.TEACH_TEXT, teach.TEACH_EXAMPLES, teach.teach_options),
 }
 TEXT = "Map circles, triangles, rectangles and pentagons with a simulated robot and its LiDAR."
 EXAMPLES = """\

@@ -14,7 +14,7 @@ import pytest
 
 import primkit as pk
 from primkit.checks import judges
-from primkit.checks.answer import COLORS, SIGNS, Answer, Check, Fault
+from primkit.checks.answer import VERDICT_COLORS, VERDICT_SIGNS, Answer, Check, Fault
 
 FOLDER = Path(__file__).resolve().parent / "answers"
 ANSWERS = {}
@@ -131,9 +131,9 @@ def test_what_a_function_prints_and_warns_stays_quiet(capsys):
 
 
 def test_a_number_as_text_is_html_with_sign_and_word():
-    for verdict in SIGNS:
+    for verdict in VERDICT_SIGNS:
         html = Answer(verdict, "a < b\nnext")._repr_html_()
-        assert f"{SIGNS[verdict]} {verdict}" in html
+        assert f"{VERDICT_SIGNS[verdict]} {verdict}" in html
         assert "a &lt; b<br>next" in html
 
 
@@ -143,7 +143,7 @@ def luminance(color):
     return float(np.dot(linear, [0.2126, 0.7152, 0.0722]))
 
 
-@pytest.mark.parametrize("color", COLORS.values())
+@pytest.mark.parametrize("color", VERDICT_COLORS.values())
 def test_letters_have_enough_contrast_to_white(color):
     assert 1.05 / (luminance(color) + 0.05) >= 4.5
 

@@ -12,7 +12,7 @@ import pytest
 
 from primkit.checks import Check, Fault, judges
 from primkit.course.grading import MIME, OutOfTime, Part, Task, TimeLimit, personal_truth
-from primkit.course.grading.own_board import TRUTH
+from primkit.course.grading.own_board import TRUTH_VARIABLE
 from primkit.course.personal import personal_world
 from primkit.formats import save_world
 
@@ -282,11 +282,11 @@ def test_a_notebook_shows_the_table_and_returns_the_number():
 
 
 def test_the_truth_is_the_student_s_while_graded_and_the_demonstration_otherwise(tmp_path, monkeypatch):
-    monkeypatch.delenv(TRUTH, raising=False)
+    monkeypatch.delenv(TRUTH_VARIABLE, raising=False)
     assert personal_truth() == personal_world("demonstration", salt="the salt of the demonstration")
     hers = personal_world("ada", salt="0123456789abcdef")
     save_world(hers, tmp_path / "truth.geojson")
-    monkeypatch.setenv(TRUTH, str(tmp_path / "truth.geojson"))
+    monkeypatch.setenv(TRUTH_VARIABLE, str(tmp_path / "truth.geojson"))
     assert personal_truth() == hers
 
 

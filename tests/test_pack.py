@@ -303,11 +303,11 @@ def test_all_python_in_the_pages_can_be_read(name):
 
 def test_the_limits_that_are_stated_are_those_of_the_program():
     from primkit.course.course import CONFIG
-    from primkit.course.grading.task import SECONDS
+    from primkit.course.grading.task import PART_SECONDS
 
     cell, tests, megabytes = (re.search(rf"\.{name} = (\d+)", CONFIG)[1] for name in LIMITS)
     page = PAGES["untrusted_code.md"]
-    assert f"for each part of a hidden test ({SECONDS:g} s; " in page
+    assert f"for each part of a hidden test ({PART_SECONDS:g} s; " in page
     assert f"for each cell ({cell} s) and each hidden test as a whole ({tests} s)" in page
     assert f"{int(megabytes) / 1024:g} GB for each submission" in page
 

@@ -1,13 +1,14 @@
 """Answer: whether a student's function is right, and if not, what is off.
 
-The frame of all checks. A check runs the function on many cases, judges each result with a tolerance, and answers one
-of four things: *not attempted*, *wrong* with what is off, *error* with the input that broke it, or *right*.
+A check runs the function on many cases, judges each result with a tolerance, and answers one of four things: *not
+attempted*, *wrong* with what is off, *error* with the input that broke it, or *right*.
 
 In:  the student's function, and a ``Check``: cases, a reference, how to judge, and known faults by their names.
 Out: an ``Answer``, which a notebook shows; or the function to go on with, the student's own or the reference.
 
 >>> def half(x: float) -> float:
 ...     return x / 2
+>>> from primkit.checks.judges import number
 >>> check = Check("half", half, lambda rng: [(x,) for x in rng.uniform(size=5)], number("m"))
 >>> check(lambda x: 0.5 * x)
 ✓ right: half passes all 5 cases.
@@ -29,20 +30,16 @@ from typing import Any, Literal
 
 import numpy as np
 
-from .judges import Judge, number, same, shown
-
-__all__ = ["Answer", "Case", "Check", "Fault", "Step", "number"]
+from .cases import Args
+from .judges import Judge, same, shown
 
 Verdict = Literal["not attempted", "wrong", "error", "right"]
-Args = tuple[Any, ...]
 
-CHANGES = "changes its arguments"
-ASKS = "asks for other arguments"
 SEED = 20  # the same cases for everybody, on every run
 
-SIGNS: dict[Verdict, str] = {"not attempted": "○", "wrong": "✗", "error": "!", "right": "✓"}
+VERDICT_SIGNS = {"not attempted": "○", "wrong": "✗", "error": "!", "right": "✓"}
 # Okabe and Ito's colours, dark enough for letters; the sign and the word say the same without them.
-COLORS: dict[Verdict, str] = {"not attempted": "#5A5A5A", "wrong": "#A34700", "error": "#A34700", "right": "#00694D"}
+VERDICT_COLORS = {"not attempted": "#5A5A5A", "wrong": "#A34700", "error": "#A34700", "right": "#00694D"}
 
 
 @dataclass(frozen=True)
@@ -69,13 +66,13 @@ class Answer:
         return self.verdict == "right"
 
     def __repr__(self) -> str:
-        return f"{SIGNS[self.verdict]} {self.verdict}: {self.says}"
+        return f"{VERDICT_SIGNS[self.verdict]} {self.verdict}: {self.says}"
 
     def _repr_html_(self) -> str:
-        color, words = COLORS[self.verdict], escape(self.says).replace("\n", "<br>")
+        color, words = VERDICT_COLORS[self.verdict], escape(self.says).replace("\n", "<br>")
         return (
             f'<div style="border-left:4px solid {color};padding:4px 10px;line-height:1.5">'
-            f'<b style="color:{color}">{SIGNS[self.verdict]} {self.verdict}</b>: {words}</div>'
+            f'<b style="color:{color}">{VERDICT_SIGNS[self.verdict]} {self.verdict}</b>: {words}</div>'
         )
 
 
@@ -157,12 +154,14 @@ class Check:
                 says = f"{self._call(args)} raised {kind}: {error}"
                 if isinstance(error, TypeError) and not _takes(mine, given):
                     names = ", ".join(inspect.signature(self.reference).parameters)
-                    return Answer("error", f"{says}\nKeep the arguments that are given: {self.name}({names}).", ASKS)
+                    says += f"\nKeep the arguments that are given: {self.name}({names})."
+                    return Answer("error", says, "asks for other arguments")
                 return Answer("error", says, f"raises {kind}")
             if not cases and _is_stub(got):
                 return Answer("not attempted", f"{self.name} still returns `...`.")
             if not same(given, args):
-                return Answer("wrong", f"{self._call(args)} changes what it is given: work on a copy.", CHANGES)
+                says = f"{self._call(args)} changes what it is given: work on a copy."
+                return Answer("wrong", says, "changes its arguments")
             expected = self.reference(*copy.deepcopy(args))
             cases.append(Case(args, got, expected, self.judge(got, expected, args)))
         return self._judged(cases)

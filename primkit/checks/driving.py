@@ -24,14 +24,13 @@ from ..arguments import Floats
 from ..robot import AXLE, FASTEST, WHEEL, moved
 from . import judges
 from .answer import Case, Check, Fault
+from .cases import RANDOM_CASES, Args, around
 
 Pose = tuple[float, float, float]
 
-RANDOM_CASES = 200
-EXACT = 1e-9  # m and rad
-EDGE = 1e-4  # m: outlines' places whose nearest point is as far as the reach, to this, are left out
+REACH_UNDECIDED = 1e-4  # m: outlines' places whose nearest point is as far as the reach, to this, are left out
 
-_as_array = judges.array(tolerance=EXACT)
+_as_array = judges.array()
 
 
 def pose_after(pose: Pose, left: float, right: float, seconds: float) -> Floats:
@@ -39,7 +38,7 @@ def pose_after(pose: Pose, left: float, right: float, seconds: float) -> Floats:
     return moved(pose, (left, right), seconds)
 
 
-def _same_pose(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
+def _same_pose(got: Any, expected: Any, args: Args) -> str | None:
     """Judge a pose: metres, and a heading up to whole turns."""
     try:
         values = np.asarray(got, dtype=float)
@@ -50,7 +49,7 @@ def _same_pose(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
     turns = np.round((values[2] - expected[2]) / (2 * np.pi))
     values = values - [0.0, 0.0, 2 * np.pi * turns]
     worst = int(np.argmax(np.abs(values - expected)))
-    if abs(values[worst] - expected[worst]) <= EXACT:
+    if abs(values[worst] - expected[worst]) <= judges.CLOSE:
         return None
     got, wanted = (judges.shown(float(value[worst])) for value in (values, expected))
     if got == wanted:  # four digits would look like rounding
@@ -59,7 +58,7 @@ def _same_pose(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
     return f"{name}: got {got} {unit}, expected {wanted} {unit}"
 
 
-def _drives(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+def _drives(rng: np.random.Generator) -> Iterator[Args]:
     """Yield a straight way, a turn on the spot, standing still, an arc, then any speeds from any pose."""
     yield (0.0, 0.0, 0.0), 2.0, 2.0, 1.0
     yield (0.0, 0.0, 0.0), -1.0, 1.0, 0.5
@@ -86,9 +85,14 @@ def _straight(share: float) -> Callable[..., Floats]:
     return step
 
 
-def _with(change: Callable[[Pose, float, float, float], tuple[Any, ...]]) -> Callable[..., Floats]:
-    """Return a faulty step: the right one for other arguments."""
-    return lambda *args: pose_after(*change(*args))
+def _speeds(change: Callable[[float, float], tuple[float, float]]) -> Callable[..., Floats]:
+    """Return a faulty step: the right one at another mean, and half difference, of the wheels' speeds."""
+
+    def step(pose: Pose, left: float, right: float, seconds: float) -> Floats:
+        mean, half = change((left + right) / 2, (right - left) / 2)
+        return pose_after(pose, mean - half, mean + half, seconds)
+
+    return step
 
 
 def _after(fixed: float) -> Callable[..., Floats]:
@@ -96,35 +100,9 @@ def _after(fixed: float) -> Callable[..., Floats]:
     return lambda pose, left, right, _seconds: pose_after(pose, left, right, fixed)
 
 
-def _axle_forgotten(pose: Pose, left: float, right: float, seconds: float) -> Floats:
-    """Return the step whose wheels are a metre apart."""
-    way, apart = (left + right) / 2, (right - left) / 2 * AXLE
-    return pose_after(pose, way - apart, way + apart, seconds)
-
-
-def _radius_forgotten(pose: Pose, left: float, right: float, seconds: float) -> Floats:
-    return pose_after(pose, left / WHEEL, right / WHEEL, seconds)
-
-
-def _half_forgotten(pose: Pose, left: float, right: float, seconds: float) -> Floats:
-    """Return the step that goes on at the sum of both wheels' speeds, not at their mean."""
-    way, apart = left + right, (right - left) / 2
-    return pose_after(pose, way - apart, way + apart, seconds)
-
-
-def _in_own_frame(pose: Pose, left: float, right: float, seconds: float) -> Floats:
-    """Return the step as the robot sees it, added to the pose without being turned into the world."""
-    return np.asarray(pose) + pose_after((0.0, 0.0, 0.0), left, right, seconds)
-
-
-def _in_degrees(pose: Pose, left: float, right: float, seconds: float) -> Floats:
-    return pose_after(pose, left, right, seconds) * [1.0, 1.0, 180 / np.pi]
-
-
 def _only_straight_is_off(cases: list[Case]) -> bool:
     """Tell whether all is right but where both wheels turn equally fast."""
-    off = [case for case in cases if case.off is not None]
-    return all(case.args[1] == case.args[2] for case in off)
+    return all(case.args[1] == case.args[2] for case in cases if case.off is not None)
 
 
 def _pieces(cases: list[Case]) -> bool:
@@ -135,17 +113,15 @@ def _pieces(cases: list[Case]) -> bool:
             return False
         beside = np.hypot(*(values[:2] - case.expected[:2]))
         chord = np.hypot(*(case.expected[:2] - case.args[0][:2]))
-        turned = abs(case.args[2] - case.args[1]) > EXACT
-        if not beside <= (chord / 2 if turned else EXACT) + EXACT:
+        turned = abs(case.args[2] - case.args[1]) > judges.CLOSE
+        if not beside <= (chord / 2 if turned else judges.CLOSE) + judges.CLOSE:
             return False
     return True
 
 
 def _heading_stays(cases: list[Case]) -> bool:
     """Tell whether the places are right and the headings are the old ones."""
-    return all(
-        _same_pose(case.got, [*case.expected[:2], case.args[0][2]], case.args) is None for case in cases
-    )  # nonsense is judged as well
+    return all(_same_pose(case.got, [*case.expected[:2], case.args[0][2]], case.args) is None for case in cases)
 
 
 drive_step = Check(
@@ -176,21 +152,25 @@ drive_step = Check(
         ),
         Fault(
             "It turns the wrong way: a faster right wheel turns the robot to the left, counter-clockwise.",
-            like=_with(lambda pose, left, right, seconds: (pose, right, left, seconds)),
+            like=_speeds(lambda mean, half: (mean, -half)),
             name="left for right",
         ),
         Fault(
             "Wheel speeds are in rad/s: times the wheel's radius R they are metres per second.",
-            like=_radius_forgotten,
+            like=_speeds(lambda mean, half: (mean / WHEEL, half / WHEEL)),
             name="no wheel radius",
         ),
         Fault(
-            "It turns too little: the difference of both wheels' ways is divided by the axle A.", like=_axle_forgotten
+            "It turns too little: the difference of both wheels' ways is divided by the axle A.",
+            like=_speeds(lambda mean, half: (mean, half * AXLE)),
         ),
-        Fault("It goes twice as far: the middle of the axle has the mean of both speeds.", like=_half_forgotten),
+        Fault(
+            "It goes twice as far: the middle of the axle has the mean of both speeds.",
+            like=_speeds(lambda mean, half: (2 * mean, half)),
+        ),
         Fault(
             "The step is that of a robot that looks along x: turn it by the old heading first.",
-            like=_in_own_frame,
+            like=lambda pose, *others: np.asarray(pose) + pose_after((0.0, 0.0, 0.0), *others),
             name="not turned by the old heading",
         ),
         Fault("The place is right, the heading is the old one: add the turn.", when=_heading_stays),
@@ -202,7 +182,10 @@ drive_step = Check(
             )
             for fixed in (1.0, 0.1)
         ),
-        Fault("The place is right, the heading is in degrees: radians are asked for.", like=_in_degrees),
+        Fault(
+            "The place is right, the heading is in degrees: radians are asked for.",
+            like=lambda *args: pose_after(*args) * [1.0, 1.0, 180 / np.pi],
+        ),
         Fault(
             "That is a place: a pose has a heading as well.",
             when=lambda cases: all("of shape (2,)" in (case.off or "") for case in cases),
@@ -222,13 +205,16 @@ drive_step = Check(
 
 def seen(outline: Floats, points: Floats, reach: float) -> float:
     """Return the share of the outline's places that have a point within reach."""
-    if len(points) == 0:
-        return 0.0
-    apart = np.hypot(*np.moveaxis(outline[:, None] - points[None], -1, 0))
-    return float(np.mean(apart.min(axis=1) <= reach))
+    return float(np.mean(_nearest(outline, points) <= reach))
 
 
-def _drawn_outlines(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+def _nearest(outline: Floats, points: Floats, order: float | None = None) -> Floats:
+    """Return the distance of each place to its nearest point, shape (N,), metres; inf without points."""
+    nearest: Floats = np.linalg.norm(outline[:, None] - points, order, axis=2).min(axis=1, initial=np.inf)
+    return nearest
+
+
+def _drawn_outlines(rng: np.random.Generator) -> Iterator[Args]:
     """Yield half of a wall, a wall without points, one point for two places, then arcs of circles with strays."""
     wall = np.column_stack([np.linspace(0, 0.3, 4), np.zeros(4)])
     yield wall, wall[:2] + np.array([0.0, 0.002]), 0.012
@@ -239,15 +225,11 @@ def _drawn_outlines(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     for n in range(RANDOM_CASES):
         center, radius, reach = rng.uniform(-0.3, 0.3, 2), rng.uniform(0.05, 0.15), float(rng.uniform(0.005, 0.02))
         bearings = np.linspace(0, 2 * np.pi, int(rng.integers(20, 80)), endpoint=False)
-        ring = center + radius * np.column_stack([np.cos(bearings), np.sin(bearings)])
+        ring = around(center, radius, bearings)
         on_arc = rng.uniform(0, rng.uniform(0.5, 6.3), int(rng.integers(0, 30)))
-        points = center + (radius + rng.normal(0, 0.004, len(on_arc)))[:, None] * np.column_stack(
-            [np.cos(on_arc), np.sin(on_arc)]
-        )
-        strays = rng.uniform(-0.5, 0.5, (n % 7, 2))
-        together = np.vstack([points, strays])
-        apart = np.hypot(*np.moveaxis(ring[:, None] - together[None], -1, 0)).min(axis=1, initial=np.inf)
-        clear = np.abs(apart - reach) > EDGE
+        points = around(center, radius + rng.normal(0, 0.004, len(on_arc)), on_arc)
+        together = np.vstack([points, rng.uniform(-0.5, 0.5, (n % 7, 2))])  # with strays
+        clear = np.abs(_nearest(ring, together) - reach) > REACH_UNDECIDED
         if clear.any():
             yield ring[clear], together, reach
 
@@ -257,26 +239,10 @@ def _per_point(outline: Floats, points: Floats, reach: float) -> float:
     return seen(points, outline, reach) if len(points) else 0.0
 
 
-def _in_box(outline: Floats, points: Floats, reach: float) -> float:
-    if len(points) == 0:
-        return 0.0
-    return float(np.mean(np.abs(outline[:, None] - points[None]).max(axis=2).min(axis=1) <= reach))
-
-
-def _squared(outline: Floats, points: Floats, reach: float) -> float:
-    return seen(outline, points, float(np.sqrt(reach)))
-
-
 def _pairs(outline: Floats, points: Floats, reach: float) -> float:
     """Return the share of all pairs that are near to each other."""
-    if len(points) == 0:
-        return 0.0
-    return float(np.mean(np.hypot(*np.moveaxis(outline[:, None] - points[None], -1, 0)) <= reach))
-
-
-def _points_per_place(outline: Floats, points: Floats, reach: float) -> float:
-    near = _per_point(outline, points, reach) * len(points)
-    return near / len(outline)
+    near = np.linalg.norm(outline[:, None] - points, axis=2) <= reach
+    return float(near.mean()) if near.size else 0.0
 
 
 def _empty_is_off(cases: list[Case]) -> bool:
@@ -298,12 +264,18 @@ share_seen = Check(
         ),
         Fault(
             "Ten points at one place show one place: count places, not points.",
-            like=_points_per_place,
+            like=lambda outline, points, reach: _per_point(outline, points, reach) * len(points) / len(outline),
             name="points for places",
         ),
         Fault("That is the share of all pairs: for a place, one near point is enough.", like=_pairs),
-        Fault("That reach is a square: take the distance, not |dx| and |dy| apart.", like=_in_box),
-        Fault("The squared distance is compared with the reach: is a root missing?", like=_squared),
+        Fault(
+            "That reach is a square: take the distance, not |dx| and |dy| apart.",
+            like=lambda o, p, reach: float(np.mean(_nearest(o, p, np.inf) <= reach)),
+        ),
+        Fault(
+            "The squared distance is compared with the reach: is a root missing?",
+            like=lambda o, p, reach: seen(o, p, reach**0.5),
+        ),
         Fault(
             "That is how many, not which share: divide by the number of places.",
             like=lambda outline, points, reach: seen(outline, points, reach) * len(outline),

@@ -15,20 +15,20 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arguments import ROUNDING, Floats
+from ..arguments import ROUNDING, Bools, Floats
 from ..lines import LINE
 from ..lines import fit_line as best_fit
 from ..ransac import run_ransac
 from .answer import Case, Check, Fault
-from .judges import as_line, line, shown
-from .walls import EDGE, bands, clouds, pairs, scenes
+from .cases import Args
+from .judges import CLOSE, as_line, line, no_return, shown
+from .walls import bands, clouds, pairs, scenes
 
 Pair = tuple[float, float]  # angle and offset of a line
 
-ENOUGH = 0.9  # of the inliers that the library's line has: another sample may miss a few at the wall's ends
-OFF_FIT = 1.0  # of the threshold: how far a line may lie from the best fit of its inliers; one refit comes to 0.6
+LEAST_INLIERS = 0.9  # of those that the library's line has: another sample may miss a few at the wall's ends
+MOST_OFF_FIT = 1.0  # of the threshold, from the best fit of a line's inliers; one refit comes to 0.6
 
 
 def through(p: Floats, q: Floats) -> Pair | None:
@@ -40,10 +40,10 @@ def through(p: Floats, q: Floats) -> Pair | None:
     return angle, float(p @ (np.cos(angle), np.sin(angle)))
 
 
-def near(points: Floats, line: Any, threshold: float) -> NDArray[np.bool_]:
+def near(points: Floats, line: Any, threshold: float) -> Bools:
     """Return which points are at most ``threshold`` metres from a line, boundary included."""
     angle, offset = as_line(line) or line  # a Line, or its two numbers
-    inside: NDArray[np.bool_] = np.abs(points @ (np.cos(angle), np.sin(angle)) - offset) <= threshold + ROUNDING
+    inside: Bools = np.abs(points @ (np.cos(angle), np.sin(angle)) - offset) <= threshold + ROUNDING
     return inside
 
 
@@ -52,7 +52,7 @@ def fitted(points: Floats) -> Pair | None:
     return as_line(best_fit(points))
 
 
-def best_of(points: Floats, threshold: float, trials: int, rng: Any) -> tuple[Pair, NDArray[np.bool_]] | None:
+def best_of(points: Floats, threshold: float, trials: int, rng: Any) -> tuple[Pair, Bools] | None:
     """Return the best line among random samples, refitted, and its inliers; None when no sample fixes a line."""
     found = run_ransac(points, LINE, threshold, trials=trials, rng=rng)
     if found is None:
@@ -64,7 +64,7 @@ def best_of(points: Floats, threshold: float, trials: int, rng: Any) -> tuple[Pa
 # --- judges ----------------------------------------------------------------------------------------------------
 
 
-def _mask(value: Any, n: int) -> NDArray[np.bool_] | None:
+def _mask(value: Any, n: int) -> Bools | None:
     """Return a result as n times True or False; None for what is something else."""
     try:
         mask = np.asarray(value)
@@ -73,12 +73,11 @@ def _mask(value: Any, n: int) -> NDArray[np.bool_] | None:
     return mask if mask.shape == (n,) and mask.dtype == bool else None
 
 
-def _judge_mask(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None:
+def _judge_mask(got: Any, expected: Any, _args: Args) -> str | None:
     """Judge which points are inliers."""
     mask = _mask(got, len(expected))
     if mask is None:
-        hint = " (is there a return?)" if got is None else ""
-        return f"got {shown(got)}, expected True or False for each of the {len(expected)} points{hint}"
+        return f"got {shown(got)}, expected True or False for each of the {len(expected)} points{no_return(got)}"
     extra, missing = int((mask & ~expected).sum()), int((~mask & expected).sum())
     return f"{extra} points too many are inliers, and {missing} too few" if extra or missing else None
 
@@ -86,29 +85,28 @@ def _judge_mask(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None:
 NOT_ITS_OWN, NOT_REFITTED, FEW = "not those within the threshold of the line", "best fit of its own inliers", "got only"
 
 
-def _judge_consensus(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
+def _judge_consensus(got: Any, expected: Any, args: Args) -> str | None:
     """Judge a line and its inliers against the points: they must agree, be many, and be fitted."""
     points, threshold = args[0], args[1]
     wanted = "None" if expected is None else "a line (angle, offset) and True or False for each point"
     if expected is None or got is None:
-        missing = " (is there a return?)" if got is None else ""
-        return None if got is expected else f"got {shown(got)}, expected {wanted}{missing}"
+        return None if got is expected else f"got {shown(got)}, expected {wanted}{no_return(got)}"
     pair = got if isinstance(got, (tuple, list)) and len(got) == 2 else (None, None)
     own, mask = as_line(pair[0]), _mask(pair[1], len(points))
     if own is None or mask is None or not np.isfinite(own).all():
         return f"got {shown(got)}, expected {wanted}"
     distance = np.abs(points @ (np.cos(own[0]), np.sin(own[0])) - own[1])
-    wrong = (mask != (distance <= threshold)) & (np.abs(distance - threshold) > EDGE)
+    wrong = (mask != (distance <= threshold)) & (np.abs(distance - threshold) > CLOSE)
     if wrong.any():
         return f"{int(wrong.sum())} of the inliers are {NOT_ITS_OWN} that is returned"
     most = int(expected[1].sum())
-    if mask.sum() < ENOUGH * most:
+    if mask.sum() < LEAST_INLIERS * most:
         return f"{FEW} {int(mask.sum())} inliers, expected about {most}"
     best = fitted(points[mask]) or own  # so many inliers always fix a line
     off = float(np.abs(_apart(points[mask], best, own)).max())
     # Only a sample goes exactly through two points; it may stay where a refit would lose inliers.
-    sampled = off > EDGE and (distance <= EDGE).sum() >= 2 and near(points, best, threshold).sum() >= mask.sum()
-    fits = off <= OFF_FIT * threshold and not sampled
+    sampled = off > CLOSE and (distance <= CLOSE).sum() >= 2 and near(points, best, threshold).sum() >= mask.sum()
+    fits = off <= MOST_OFF_FIT * threshold and not sampled
     return None if fits else f"the line is {shown(1000 * off)} mm off the {NOT_REFITTED}"
 
 
@@ -144,14 +142,6 @@ def _near_with(distance: Any) -> Any:
     return lambda points, line, threshold: distance(points, *(as_line(line) or line)) <= threshold + ROUNDING
 
 
-def _not_counting_the_boundary(points: Floats, line: Any, threshold: float) -> NDArray[np.bool_]:
-    return near(points, line, threshold - 2 * ROUNDING)
-
-
-def _outside(points: Floats, line: Any, threshold: float) -> NDArray[np.bool_]:
-    return ~near(points, line, threshold)
-
-
 def _without_a_line(cases: list[Case]) -> bool:
     """Tell whether nothing is off but what fixes no line."""
     return all(case.expected is None for case in cases if case.off)
@@ -181,7 +171,7 @@ def _as_indices(cases: list[Case]) -> bool:
 
 def _least_squares_in_y(cases: list[Case]) -> bool:
     """Tell whether walls that are not too steep came back as the fit of y = a x + b."""
-    judge, flat = line(1e-6), [c for c in cases if np.ptp(c.args[0][:, 0]) > 0.1 and np.ptp(c.args[0][:, 1]) > 0.05]
+    judge, flat = line(), [c for c in cases if np.ptp(c.args[0][:, 0]) > 0.1 and np.ptp(c.args[0][:, 1]) > 0.05]
     return all(judge(case.got, _y_on_x(case.args[0]), case.args) is None for case in flat)
 
 
@@ -251,8 +241,13 @@ inliers_of = Check(
     (
         Fault("That is how many they are: asked for is True or False for each point.", when=_as_a_number),
         Fault("Those are the numbers of the inliers: asked for is True or False for each point.", when=_as_indices),
-        Fault("A point exactly on the boundary is an inlier: < or <= ?", like=_not_counting_the_boundary),
-        Fault("Those are the points outside the band: is the comparison turned round?", like=_outside),
+        Fault(
+            "A point exactly on the boundary is an inlier: < or <= ?",
+            like=lambda points, line, threshold: near(points, line, threshold - 2 * ROUNDING),
+        ),
+        Fault(
+            "Those are the points outside the band: is the comparison turned round?", like=lambda *args: ~near(*args)
+        ),
         Fault(
             "Points far away on one side are inliers: a signed distance below zero is small, but not near.",
             like=_near_with(lambda p, a, d: p @ (np.cos(a), np.sin(a)) - d),
@@ -276,10 +271,7 @@ fit_line = Check(
     (
         Fault("Fewer than two different points fix no line: return None.", when=_without_a_line),
         Fault("That fits y = a x + b: it measures along y, and upright walls fail.", when=_least_squares_in_y),
-        Fault(
-            "That is the direction of most scatter, along the wall: the normal is across.",
-            like=_by_svd(0),
-        ),
+        Fault("That is the direction of most scatter, along the wall: the normal is across.", like=_by_svd(0)),
         Fault("The directions are the rows of what svd returns, not its columns.", like=_by_svd(1, columns=True)),
         Fault("Is the mean subtracted before the directions are taken?", like=_by_svd(1, centred=False)),
     ),

@@ -19,14 +19,11 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arguments import Floats, Labels
+from ..arguments import Bools, Floats, Labels
 from .answer import Case, Check, Fault
+from .cases import RANDOM_CASES, UNDECIDED, Args, random_cases
 from .judges import array, no_return, number, shown
-
-RANDOM_CASES = 200
-EDGE = 1e-6  # m: cases in which rounding alone decides which of two centres is nearer are left out
 
 
 def nearest_centers(points: Floats, centers: Floats) -> Labels:
@@ -40,9 +37,20 @@ def mean_of_each(points: Floats, labels: Labels, centers: Floats) -> Floats:
 
 
 def mean_silhouette(points: Floats, labels: Labels) -> float:
-    """Return the mean silhouette of all points, from -1 to 1: Rousseeuw (1987)."""
-    a, b, alone = _own_and_next(points, labels)
-    return float(np.where(alone, 0.0, (b - a) / np.maximum(a, b)).mean())
+    """Return the mean silhouette of all points, from -1 to 1: Rousseeuw (1987).
+
+    (b - a) / max(a, b),  a: mean distance to the others of the own group, b: to the points of the next one, metres.
+    """
+    return _mean_of(*_own_and_next(points, labels))
+
+
+def _mean_of(a: Floats, b: Floats, alone: Bools) -> float:
+    return float(np.where(alone, 0.0, _score(a, b)).mean())
+
+
+def _score(a: Floats, b: Floats) -> Floats:
+    scores: Floats = (b - a) / np.maximum(a, b)
+    return scores
 
 
 def _distances(points: Floats, others: Floats) -> Floats:
@@ -60,7 +68,7 @@ def _each(middle: Callable[[Floats], Any], empty: Callable[[Floats], Any] = lamb
     return update
 
 
-def _own_and_next(points: Floats, labels: Labels, itself: int = 1) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+def _own_and_next(points: Floats, labels: Labels, itself: int = 1) -> tuple[Floats, Floats, Bools]:
     """Return each point's mean distance to its own group and to the next one, and whether it is alone.
 
     ``itself`` is how many points of the own group, the point itself, are not counted in the mean.
@@ -78,7 +86,7 @@ def _own_and_next(points: Floats, labels: Labels, itself: int = 1) -> tuple[Floa
 # --- cases --------------------------------------------------------------------------------------------------------
 
 
-def _assign_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+def _assign_cases(rng: np.random.Generator) -> Iterator[Args]:
     """Yield plain points and centres, then random ones without ties."""
     row = np.array([[0.0, 0.0], [0.1, 0.0], [0.3, 0.0], [0.4, 0.1]])
     yield row, np.array([[0.0, 0.0], [0.4, 0.0]])
@@ -86,17 +94,17 @@ def _assign_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     yield row, np.array([[0.2, 0.3], [0.22, -0.1], [0.5, 0.0]])
     yield row, np.array([[0.2, 0.0]])
     yield row[:1], np.array([[0.3, 0.3], [0.1, 0.0]])
-    n = 0
-    while n < RANDOM_CASES:
+
+    def draw(_n: int) -> Args | None:
         points = rng.uniform(-0.5, 0.5, (rng.integers(1, 30), 2))
         centers = rng.uniform(-0.5, 0.5, (rng.integers(1, 7), 2))
         two = np.sort(_distances(points, centers), axis=1)[:, :2]
-        if len(centers) == 1 or np.diff(two, axis=1).min() > EDGE:
-            n += 1
-            yield points, centers
+        return (points, centers) if len(centers) == 1 or np.diff(two, axis=1).min() > UNDECIDED else None
+
+    yield from random_cases(draw)
 
 
-def _update_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+def _update_cases(rng: np.random.Generator) -> Iterator[Args]:
     """Yield groups of one and more points, groups with none, then random ones, a third of them with an empty group."""
     row = np.array([[0.0, 0.0], [0.1, 0.0], [0.35, 0.1], [0.4, 0.0], [0.45, 0.2]])
     start = np.array([[0.1, 0.1], [0.3, 0.0]])
@@ -115,7 +123,7 @@ def _update_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
         yield points, rng.permutation(labels), rng.uniform(-0.5, 0.5, (k, 2))
 
 
-def _silhouette_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+def _silhouette_cases(rng: np.random.Generator) -> Iterator[Args]:
     """Yield two groups far apart, the wrong pairs, a third group, a lone point; then random ones."""
     pairs = np.array([[0.0, 0.0], [0.0, 0.1], [0.4, 0.0], [0.4, 0.1]])
     yield pairs, np.array([0, 0, 1, 1])
@@ -136,7 +144,7 @@ def _silhouette_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
 # --- judges and faults --------------------------------------------------------------------------------------------
 
 
-def _labels(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
+def _labels(got: Any, expected: Any, args: Args) -> str | None:
     """Judge the numbers of centres: one whole number for each point."""
     wanted, k = np.asarray(expected), len(args[1])
     kind = f"expected {len(wanted)} whole numbers from 0 to {k - 1}, one for each point"
@@ -175,7 +183,7 @@ def _nan_for_an_empty_group(cases: list[Case]) -> bool:
     return all(np.array_equal(_is_nan(case.got).any(axis=1), _empty(case)) for case in cases)
 
 
-def _is_nan(got: Any) -> NDArray[np.bool_]:
+def _is_nan(got: Any) -> Bools:
     """Return where a result is NaN, and nowhere when it holds no numbers."""
     values = np.asarray(got)
     return np.isnan(values) if values.dtype.kind == "f" else np.zeros(values.shape, dtype=bool)
@@ -184,10 +192,6 @@ def _is_nan(got: Any) -> NDArray[np.bool_]:
 def _nearest_along(axis: int) -> Any:
     """Return the assignment that compares one coordinate only."""
     return lambda points, centers: np.argmin(np.abs(points[:, [axis]] - centers[:, axis]), axis=1)
-
-
-def _one_number(cases: list[Case]) -> bool:
-    return all(isinstance(case.got, (int, np.integer)) for case in cases)
 
 
 def _least_distances(cases: list[Case]) -> bool:
@@ -199,7 +203,7 @@ def _least_distances(cases: list[Case]) -> bool:
     return all(v.dtype.kind == "f" and np.allclose(v, d) for v, d in zip(values, least, strict=True))
 
 
-def _empty(case: Case) -> NDArray[np.bool_]:
+def _empty(case: Case) -> Bools:
     """Return which groups have no points, shape (k,)."""
     _, labels, centers = case.args
     return ~np.isin(np.arange(len(centers)), labels)
@@ -218,21 +222,19 @@ def _all_others(points: Floats, labels: Labels) -> float:
     """Return the silhouette with b as the mean distance to the points of all other groups together."""
     a, _, alone = _own_and_next(points, labels)
     apart, other = _distances(points, points), labels[:, None] != labels
-    b = (apart * other).sum(axis=1) / other.sum(axis=1)
-    return float(np.where(alone, 0.0, (b - a) / np.maximum(a, b)).mean())
+    return _mean_of(a, (apart * other).sum(axis=1) / other.sum(axis=1), alone)
 
 
 def _nearest_point(points: Floats, labels: Labels) -> float:
     """Return the silhouette with b as the distance to the nearest point of another group."""
     a, _, alone = _own_and_next(points, labels)
-    b = np.where(labels[:, None] != labels, _distances(points, points), np.inf).min(axis=1)
-    return float(np.where(alone, 0.0, _usual(a, b)).mean())
+    return _mean_of(a, np.where(labels[:, None] != labels, _distances(points, points), np.inf).min(axis=1), alone)
 
 
 def _lone_left_out(points: Floats, labels: Labels) -> float:
     """Return the mean silhouette of the points that are not alone in their group."""
     a, b, alone = _own_and_next(points, labels)
-    return float(_usual(a, b)[~alone].mean())
+    return float(_score(a, b)[~alone].mean())
 
 
 def _with(score: Callable[[Floats, Floats], Any], itself: int = 1, lone: float = 0.0) -> Any:
@@ -245,10 +247,6 @@ def _with(score: Callable[[Floats, Floats], Any], itself: int = 1, lone: float =
     return silhouette
 
 
-def _usual(a: Floats, b: Floats) -> Any:
-    return (b - a) / np.maximum(a, b)
-
-
 def _to_centers(points: Floats, labels: Labels) -> float:
     """Return the silhouette with distances to the groups' centres instead of to their points."""
     names, inverse = np.unique(labels, return_inverse=True)
@@ -256,8 +254,7 @@ def _to_centers(points: Floats, labels: Labels) -> float:
     rows = np.arange(len(points))
     a = apart[rows, inverse].copy()
     apart[rows, inverse] = np.inf
-    alone = np.bincount(inverse)[inverse] == 1
-    return float(np.where(alone, 0.0, _usual(a, apart.min(axis=1))).mean())
+    return _mean_of(a, apart.min(axis=1), np.bincount(inverse)[inverse] == 1)
 
 
 assign_points = Check(
@@ -279,7 +276,10 @@ assign_points = Check(
             when=_shaped(lambda case: (len(case.args[0]), len(case.args[1]))),
         ),
         Fault("Those are the least distances: the number of the centre is asked for.", when=_least_distances),
-        Fault("That is one number for all points: along which axis is the least sought?", when=_one_number),
+        Fault(
+            "That is one number for all points: along which axis is the least sought?",
+            when=lambda cases: all(isinstance(case.got, (int, np.integer)) for case in cases),
+        ),
         Fault(
             "That is the nearest point of each centre: along which axis is the least sought?",
             when=_shaped(lambda case: (len(case.args[1]),)),
@@ -324,14 +324,14 @@ silhouette = Check(
     number(),
     (
         Fault("A point alone in its group divides 0 by 0: its silhouette is 0.", when=_nan_for_a_lone_point),
-        Fault("A point alone in its group counts as 1; by definition it counts as 0.", like=_with(_usual, lone=1.0)),
-        Fault("a counts the point itself, at distance 0: the mean goes over the others.", like=_with(_usual, 0)),
-        Fault("a counts the point itself, at distance 0: the mean goes over the others.", like=_with(_usual, 0, 1.0)),
+        Fault("A point alone in its group counts as 1; by definition it counts as 0.", like=_with(_score, lone=1.0)),
+        Fault("a counts the point itself, at distance 0: the mean goes over the others.", like=_with(_score, 0)),
+        Fault("a counts the point itself, at distance 0: the mean goes over the others.", like=_with(_score, 0, 1.0)),
         Fault("b is a mean over all points of a group, not the distance to the nearest point.", like=_nearest_point),
         Fault("Points alone in their group count too, as 0: the mean goes over all points.", like=_lone_left_out),
         Fault("b is the mean distance to the nearest other group, not to all other points.", like=_all_others),
         Fault("The difference b - a is not yet divided by the larger of the two.", like=_with(lambda a, b: b - a)),
-        Fault("The sign is turned round: near 1 is clearly apart.", like=_with(lambda a, b: -_usual(a, b))),
+        Fault("The sign is turned round: near 1 is clearly apart.", like=_with(lambda a, b: -_score(a, b))),
         Fault("Distances go to the points of a group here, not to its centre.", like=_to_centers),
         Fault(
             "That is one silhouette for each point: their mean is asked for.",

@@ -22,15 +22,15 @@ from ..evaluation import CENTER_WEIGHT, DIMENSION_WEIGHT, SHAPE_WEIGHT, match
 from ..shapes import Circle, Polygon, Shape
 from ..world import random_world
 from .answer import Check, Fault
-from .judges import CLOSE, number, shown
+from .cases import UNDECIDED, Args, random_cases
+from .judges import CLOSE, no_return, number, shown
 
 Pairs = list[tuple[int, int]]
 
-RANDOM_CASES = 120
-EDGE = 1e-6  # m: cases in which rounding alone decides are left out
+SCORING_CASES = 120  # of each check: they take longer than other lessons'
 GATE, TOLERANCE = 0.1, 0.005  # m
-ANY = 10.0  # m: a gate that lets everything through
-EACH: tuple[float, float, float] = (SHAPE_WEIGHT, CENTER_WEIGHT, DIMENSION_WEIGHT)
+OPEN_GATE = 10.0  # m: lets everything through
+WEIGHTS = (SHAPE_WEIGHT, CENTER_WEIGHT, DIMENSION_WEIGHT)
 
 
 # --- one-to-one pairs -------------------------------------------------------------------------------------------
@@ -50,7 +50,7 @@ def _distances(found: Floats, true: Floats) -> Floats:
     return np.hypot(offset[..., 0], offset[..., 1])
 
 
-def _match_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+def _match_cases(rng: np.random.Generator) -> Iterator[Args]:
     """Yield plain situations, then crowded random ones."""
     a, b, c = (0.0, 0.0), (0.2, 0.0), (0.0, 0.2)
     yield np.array([b, a]), np.array([a, b]), GATE  # in another order
@@ -60,23 +60,22 @@ def _match_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     yield np.array([(0.3, 0.0)]), np.array([a]), GATE
     yield np.empty((0, 2)), np.array([a, b]), GATE
     yield np.array([a, b]), np.empty((0, 2)), GATE
-    n = 0
-    while n < RANDOM_CASES:
+
+    def draw(_n: int) -> Args | None:
         true = rng.uniform(-0.12, 0.12, (rng.integers(1, 5), 2))
         found = np.vstack([true + rng.normal(0, 0.04, true.shape), rng.uniform(-0.2, 0.2, (2, 2))])
         found = rng.permutation(found)[: rng.integers(1, 6)]
         gate = float(rng.choice([0.05, GATE]))
-        if np.abs(_distances(found, true) - gate).min() > EDGE:
-            n += 1
-            yield found, true, gate
+        return (found, true, gate) if np.abs(_distances(found, true) - gate).min() > UNDECIDED else None
+
+    yield from random_cases(draw, SCORING_CASES)
 
 
-def _judge_pairs(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
+def _judge_pairs(got: Any, expected: Any, args: Args) -> str | None:
     """Judge a pairing by what it is for: one-to-one, within the gate, as many as possible, least in all."""
     pairs = _as_pairs(got)
     if pairs is None:
-        missing = " (is there a return?)" if got is None else ""
-        return f"got {shown(got)}, expected a list of pairs (index found, index true){missing}"
+        return f"got {shown(got)}, expected a list of pairs (index found, index true){no_return(got)}"
     if sorted(pairs) == sorted(expected):
         return None
     found, true, gate = args
@@ -112,13 +111,8 @@ def _as_pairs(got: Any) -> Pairs | None:
 def _nearest(found: Floats, true: Floats, gate: float, *, of: str) -> Pairs:
     """Pair each found shape with its nearest true one, or each true one with its nearest found one, used or not."""
     apart = _distances(found, true)
-    if not apart.size:
-        return []
-    if of == "found":
-        pairs = [(f, int(t)) for f, t in enumerate(apart.argmin(axis=1))]
-    else:
-        pairs = [(int(f), t) for t, f in enumerate(apart.argmin(axis=0))]
-    return [pair for pair in pairs if apart[pair] <= gate]
+    best = apart.min(axis=1 if of == "found" else 0, keepdims=True, initial=np.inf)
+    return [(int(f), int(t)) for f, t in np.argwhere((apart == best) & (apart <= gate))]
 
 
 def _greedy(found: Floats, true: Floats, gate: float, *, order: str) -> Pairs:
@@ -136,11 +130,6 @@ def _greedy(found: Floats, true: Floats, gate: float, *, order: str) -> Pairs:
     return pairs
 
 
-def _gate_afterwards(found: Floats, true: Floats, gate: float) -> Pairs:
-    apart = _distances(found, true)
-    return [pair for pair in best_pairs(found, true, ANY) if apart[pair] <= gate]
-
-
 match_shapes = Check(
     "match_shapes",
     best_pairs,
@@ -151,26 +140,26 @@ match_shapes = Check(
             "Each pair should be (index found, index true), not the other way round.",
             like=lambda found, true, gate: [(t, f) for f, t in best_pairs(found, true, gate)],
         ),
-        Fault("Pairs are made beyond the gate too.", like=lambda found, true, _gate: best_pairs(found, true, ANY)),
+        Fault(
+            "Pairs are made beyond the gate too.", like=lambda found, true, _gate: best_pairs(found, true, OPEN_GATE)
+        ),
         Fault(
             "The gate comes too late: a pair that it forbids has taken shapes that others could use.",
-            like=_gate_afterwards,
+            like=lambda f, t, gate: [pair for pair in best_pairs(f, t, OPEN_GATE) if _distances(f, t)[pair] <= gate],
         ),
-        Fault(
-            "Each takes its nearest, used or not: is a shape free once it stands in a pair?",
-            like=partial(_nearest, of="found"),
+        *(
+            Fault(
+                "Each takes its nearest, used or not: is a shape free once it stands in a pair?",
+                like=partial(_nearest, of=of),
+            )
+            for of in ("found", "true")
         ),
-        Fault(
-            "Each takes its nearest, used or not: is a shape free once it stands in a pair?",
-            like=partial(_nearest, of="true"),
-        ),
-        Fault(
-            "First come, first served: the order of a list must not decide who gets which.",
-            like=partial(_greedy, order="found"),
-        ),
-        Fault(
-            "First come, first served: the order of a list must not decide who gets which.",
-            like=partial(_greedy, order="true"),
+        *(
+            Fault(
+                "First come, first served: the order of a list must not decide who gets which.",
+                like=partial(_greedy, order=order),
+            )
+            for order in ("found", "true")
         ),
         Fault(
             "The closest pair first is greedy too: it can leave others far apart, or without a partner.",
@@ -197,7 +186,7 @@ def _scored(
     pairs: Pairs,
     tolerance: float,
     *,
-    weights: tuple[float, float, float] = EACH,
+    weights: tuple[float, float, float] = WEIGHTS,
     absolute: bool = True,
     shift: bool = True,
     misses: bool = True,
@@ -235,7 +224,7 @@ def _dimension_errors(found: Shape, true: Shape, *, shift: bool = True) -> list[
     return min(((np.roll(ours, n) - theirs) for n in shifts), key=lambda e: float(np.abs(e).sum())).tolist()
 
 
-def _score_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+def _score_cases(rng: np.random.Generator) -> Iterator[Args]:
     """Yield circles that are right, large, small, missed or too many, then random boards with errors of all sorts."""
     a, b = Circle((0.0, 0.0), 0.06), Circle((0.2, 0.0), 0.08)
     yield [a, b], [a, b], [(0, 0), (1, 1)], TOLERANCE
@@ -245,8 +234,8 @@ def _score_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     yield [], [a, b], [], TOLERANCE
     square = Polygon([(-0.03, -0.03), (0.03, -0.03), (0.03, 0.03), (-0.03, 0.03)])
     yield [a], [square], [(0, 0)], TOLERANCE  # of the wrong kind, with a radius as long as the sides
-    n = 0
-    while n < RANDOM_CASES:
+
+    def draw(_n: int) -> Args | None:
         true = list(random_world(int(rng.integers(1, 5)), rng=rng).shapes)
         found = [_near(shape, rng) for shape in true if rng.random() < 0.85]
         found = [found[i] for i in rng.permutation(len(found))]
@@ -254,9 +243,9 @@ def _score_cases(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
             found.insert(int(rng.integers(len(found) + 1)), Circle(rng.uniform(0.4, 0.5, 2), 0.05))
         pairs = match(found, true, GATE)
         tolerance = float(rng.choice([0.001, TOLERANCE]))
-        if _is_clear(found, true, pairs, tolerance):
-            n += 1
-            yield found, true, pairs, tolerance
+        return (found, true, pairs, tolerance) if _is_clear(found, true, pairs, tolerance) else None
+
+    yield from random_cases(draw, SCORING_CASES)
 
 
 def _near(shape: Shape, rng: np.random.Generator) -> Shape:
@@ -272,16 +261,10 @@ def _near(shape: Shape, rng: np.random.Generator) -> Shape:
 
 def _is_clear(found: Sequence[Shape], true: Sequence[Shape], pairs: Pairs, tolerance: float) -> bool:
     """Tell whether no value lies on the edge between right and wrong."""
-    errors = [e for f, t in pairs for e in (*(found[f].centroid - true[t].centroid), *_dimensions(found[f], true[t]))]
-    return all(abs(abs(e) - tolerance) > EDGE for e in errors)
-
-
-def _dimensions(found: Shape, true: Shape) -> list[float]:
-    return _dimension_errors(found, true) if found.kind == true.kind else []
-
-
-def _like(**fault: Any) -> Any:
-    return partial(_scored, **fault)
+    errors: list[float] = []
+    for f, t in ((found[f], true[t]) for f, t in pairs):
+        errors += [*(f.centroid - t.centroid), *(_dimension_errors(f, t) if f.kind == t.kind else ())]
+    return all(abs(abs(e) - tolerance) > UNDECIDED for e in errors)
 
 
 weighted_accuracy = Check(
@@ -290,30 +273,39 @@ weighted_accuracy = Check(
     _score_cases,
     number(),
     (
-        Fault("Values that are far too small count as right: is there an absolute value?", like=_like(absolute=False)),
-        Fault("False alarms cost nothing: each is one more wrong shape.", like=_like(alarms=False)),
+        Fault(
+            "Values that are far too small count as right: is there an absolute value?",
+            like=partial(_scored, absolute=False),
+        ),
+        Fault("False alarms cost nothing: each is one more wrong shape.", like=partial(_scored, alarms=False)),
         Fault(
             "Missed shapes cost nothing: divide by what is in the truth, not by what was matched.",
-            like=_like(misses=False),
+            like=partial(_scored, misses=False),
         ),
         Fault(
             "Neither misses nor false alarms cost anything: finding less must not score more.",
-            like=_like(misses=False, alarms=False),
+            like=partial(_scored, misses=False, alarms=False),
         ),
-        Fault("The three parts do not weigh the same: 0.4, 0.3 and 0.3.", like=_like(weights=(1 / 3, 1 / 3, 1 / 3))),
+        Fault(
+            "The three parts do not weigh the same: 0.4, 0.3 and 0.3.",
+            like=partial(_scored, weights=(1 / 3, 1 / 3, 1 / 3)),
+        ),
         Fault(
             "Sides are compared in the order of the lists: the first corner of one may be another's second.",
-            like=_like(shift=False),
+            like=partial(_scored, shift=False),
         ),
-        Fault("x and y of a centre count separately.", like=_like(together=True)),
-        Fault("F counts false alarms alone: found shapes that stand in no pair.", like=_like(all_found=True)),
+        Fault("x and y of a centre count separately.", like=partial(_scored, together=True)),
+        Fault(
+            "F counts false alarms alone: found shapes that stand in no pair.", like=partial(_scored, all_found=True)
+        ),
         Fault(
             "Sides and radii are compared across kinds: dimensions count only where the kind is right.",
-            like=_like(sides_of_any=True),
+            like=partial(_scored, sides_of_any=True),
         ),
         Fault(
-            "Centres are compared only where the kind is right: they count for every pair.", like=_like(kind_first=True)
+            "Centres are compared only where the kind is right: they count for every pair.",
+            like=partial(_scored, kind_first=True),
         ),
-        Fault("That is in per cent: a score goes from 0 to 1.", like=_like(weights=(40.0, 30.0, 30.0))),
+        Fault("That is in per cent: a score goes from 0 to 1.", like=partial(_scored, weights=(40.0, 30.0, 30.0))),
     ),
 )

@@ -11,35 +11,36 @@ Out: the arguments of one call after the other; plain ones first, because a mess
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
 from ..arguments import Floats
+from .cases import RANDOM_CASES, Args, random_cases
+from .judges import CLOSE
 
-RANDOM_CASES = 200
 RANSAC_CASES = 24  # each is a few hundred trials of the student's own loop
-EDGE = 1e-9  # m: a point this near to the band's boundary is on whichever side rounding puts it
 
 
-def pairs(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+def pairs(rng: np.random.Generator) -> Iterator[Args]:
     """Yield a level, an upright and a slanted pair and a doubled point, then random ones with some of each."""
     yield np.array([0.0, 0.1]), np.array([0.2, 0.1])
     yield np.array([0.3, 0.0]), np.array([0.3, 0.2])  # upright
     yield np.array([-0.3, 0.2]), np.array([-0.3, -0.1])  # downwards, left of the origin
     yield np.array([0.1, 0.0]), np.array([0.0, 0.1])
     yield np.array([0.2, 0.1]), np.array([0.2, 0.1])  # the same point twice
-    n = 0
-    while n < RANDOM_CASES:
+
+    def draw(n: int) -> Args | None:
         p, q = rng.uniform(-0.5, 0.5, (2, 2))
         if n % 10 == 0:
             q[0] = p[0]
-        if np.hypot(*(q - p)) > 0.01:
-            n += 1
-            yield (p, p.copy()) if n % 15 == 0 else (p, q)
+        if np.hypot(*(q - p)) <= 0.01:
+            return None
+        return (p, p.copy()) if n % 15 == 14 else (p, q)
+
+    yield from random_cases(draw)
 
 
-def bands(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+def bands(rng: np.random.Generator) -> Iterator[Args]:
     """Yield points on both boundaries of a band and on a line without noise, then random ones off the boundary."""
     yield np.array([(0.25, 0.0), (0.375, 0.1), (0.125, -0.2), (0.5, 0.0), (0.0, 0.3)]), (0.0, 0.25), 0.125
     yield np.array([(0.25, 0.0), (0.25, 0.4), (0.251, 0.1)]), (0.0, 0.25), 0.0
@@ -48,10 +49,10 @@ def bands(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
         threshold = float(rng.uniform(0.001, 0.02))
         points = _wall(rng, angle, offset, 30, threshold) + rng.uniform(-1, 1, (30, 1)) * threshold
         distance = np.abs(points @ (np.cos(angle), np.sin(angle)) - offset)
-        yield points[np.abs(distance - threshold) > EDGE], (angle, offset), threshold
+        yield points[np.abs(distance - threshold) > CLOSE], (angle, offset), threshold
 
 
-def clouds(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+def clouds(rng: np.random.Generator) -> Iterator[Args]:
     """Yield points exactly on level, upright and slanted lines and too few for one, then noisy walls."""
     steps = np.linspace(-0.1, 0.1, 11)
     yield (np.column_stack([steps, np.full(11, 0.2)]),)
@@ -64,7 +65,7 @@ def clouds(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
         yield (_wall(rng, angle, offset, int(rng.integers(8, 60)), 0.004),)
 
 
-def scenes(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
+def scenes(rng: np.random.Generator) -> Iterator[Args]:
     """Yield points without noise, then a noisy wall among clutter each, and what fixes no line."""
     level = np.column_stack([np.linspace(-0.2, 0.2, 12), np.full(12, 0.1)])
     yield np.vstack([level, [(0.0, 0.3), (0.1, -0.2), (-0.1, 0.25)]]), 0.002, 100, np.random.default_rng(1)

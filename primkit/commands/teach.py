@@ -11,11 +11,11 @@ import os
 from pathlib import Path
 from typing import Any
 
-from ..course.untrusted import WORDS
+from ..course.untrusted import UNTRUSTED_WORDS
 from .words import LOOK, Parser, count, path, say
 
-TEXT = "run a course: release problem sets, grade them, see how the class did"
-EXAMPLES = """\
+TEACH_TEXT = "run a course: release problem sets, grade them, see how the class did"
+TEACH_EXAMPLES = """\
 examples:
   primkit teach new-course robotics      a course folder, with all problem sets
   cd robotics
@@ -49,7 +49,7 @@ def teach_options(parser: Parser) -> None:
     new.option("--assignments", "DIR", path, None, "where source/ and grader/ lie", shown="those of the project")
     command("check", _check, "look whether all is there, and say how each fault is mended")
     command("release", _release, "make the students' version, and their personal maps", ps=True)
-    grade = command("grade", _grade, "grade what was handed in, each submission on its own", WORDS, ps=True)
+    grade = command("grade", _grade, "grade what was handed in, each submission on its own", UNTRUSTED_WORDS, ps=True)
     grade.add_argument("--again", action="store_true", help="grade also what has not changed since")
     grade.add_argument("--student", metavar="ID", action="append", default=[], help="only this one; may be repeated")
     command("report", _report, "say how the class did; write tables, a figure and nbgrader's export", ps=True)

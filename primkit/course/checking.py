@@ -17,13 +17,13 @@ from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 
-from .course import CONFIG, COPIED, Course
+from .course import CONFIG, COPIED_FOLDERS, Course
 from .handed_in import strangers
 from .moved import old_names
 
-OLDEST = (3, 11)
+LEAST_PYTHON = (3, 11)
 ENVIRONMENT = Path(__file__).resolve().parents[2] / "environment.txt"  # in a clone
-NEEDED = ("nbgrader", "jupyterlab", "ipykernel", "nbconvert", "psutil")
+REQUIRED_PACKAGES = ("nbgrader", "jupyterlab", "ipykernel", "nbconvert", "psutil")
 PIN = re.compile(r"^([\w.-]+)(?:\[[\w,]+\])?==([\w.]+)")
 
 
@@ -64,9 +64,9 @@ def check(course: Course, environment: Path = ENVIRONMENT) -> list[Finding]:
 
 def _python() -> Iterator[Finding]:
     version = ".".join(map(str, sys.version_info[:3]))
-    least = ".".join(map(str, OLDEST))
+    least = ".".join(map(str, LEAST_PYTHON))
     mend = f"install Python {least} or newer, and make the environment again with it"
-    yield Finding("Python", version, "" if sys.version_info >= OLDEST else mend)
+    yield Finding("Python", version, "" if sys.version_info >= LEAST_PYTHON else mend)
 
 
 def _packages(environment: Path) -> Iterator[Finding]:
@@ -76,7 +76,7 @@ def _packages(environment: Path) -> Iterator[Finding]:
         pins = {match[1]: match[2] for line in lines if (match := PIN.match(line))}
         mend = f"{Path(sys.executable)} -m pip install -r {environment}"
     else:
-        pins, mend = dict.fromkeys(NEEDED, ""), f'{Path(sys.executable)} -m pip install "primkit[teach]"'
+        pins, mend = dict.fromkeys(REQUIRED_PACKAGES, ""), f'{Path(sys.executable)} -m pip install "primkit[teach]"'
     wrong = 0
     for name, wanted in pins.items():
         try:
@@ -134,7 +134,7 @@ def _folder(course: Course) -> Iterator[Finding]:
 
 
 def _sources(course: Course) -> Iterator[Finding]:
-    for name in COPIED:
+    for name in COPIED_FOLDERS:
         there = (course.root / name).is_dir()
         mend = f"copy notebooks/assignments/{name} of the project's folder into {course.root}"
         yield Finding(f"{name}/", "there" if there else "missing", "" if there else mend)

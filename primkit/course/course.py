@@ -23,15 +23,15 @@ from .personal import SALT_LETTERS
 
 # Where the assignments lie in a clone of the project; a wheel holds none.
 ASSIGNMENTS = Path(__file__).resolve().parents[2] / "notebooks" / "assignments"
-COPIED = ("source", "grader")  # solutions and hidden tests: neither is ever released
+COPIED_FOLDERS = ("source", "grader")  # solutions and hidden tests: neither is ever released
 SCANS = "my_scans.npz"  # a problem set that has this file is about a personal map
 SALT = "salt.txt"
 STUDENTS = "students.csv"
-COLUMNS = ("id", "first_name", "last_name", "email")  # what `nbgrader db student import` reads
+STUDENT_COLUMNS = ("id", "first_name", "last_name", "email")  # what `nbgrader db student import` reads
 ID = re.compile(r"[\w@.-]+")  # anything else means something to nbgrader's search for files, or to the system
 
 # How a submission is put in order: nbgrader's own steps, and ours between them.
-STEPS = [
+SANITIZE_STEPS = [
     "nbgrader.preprocessors.ClearOutput",
     "nbgrader.preprocessors.DeduplicateIds",
     "primkit.course.sanitizing.WholeNotebook",
@@ -50,7 +50,7 @@ c.CourseDirectory.root = course
 
 # Copied cells are the student's own; graded cells and locked code that were deleted are put back.
 c.OverwriteCells.add_missing_cells = True
-c.Autograde.sanitize_preprocessors = {STEPS}
+c.Autograde.sanitize_preprocessors = {SANITIZE_STEPS}
 c.WholeNotebook.course = course
 
 # Submissions run with primkit's careful way to execute in the place of nbgrader's own.
@@ -138,14 +138,16 @@ class Course:
         """Return the ids of all students in the list."""
         path = self.root / STUDENTS
         if not path.is_file():
-            raise ValueError(f"{STUDENTS} is missing in {self.root}: a table with the columns {', '.join(COLUMNS)}")
+            raise ValueError(
+                f"{STUDENTS} is missing in {self.root}: a table with the columns {', '.join(STUDENT_COLUMNS)}"
+            )
         with open(path, encoding="utf-8-sig", newline="") as file:
             table = csv.DictReader(file)
             if "id" not in (table.fieldnames or ()):
                 wrong = ",".join(table.fieldnames or ())
                 semicolons = " (saved with semicolons: choose CSV with commas)" if ";" in wrong else ""
                 raise ValueError(
-                    f"{STUDENTS} must begin with the line {','.join(COLUMNS)}, got {short(wrong)}{semicolons}"
+                    f"{STUDENTS} must begin with the line {','.join(STUDENT_COLUMNS)}, got {short(wrong)}{semicolons}"
                 )
             lines = [(table.line_num, row["id"]) for row in table]
         ids = [name for _, name in lines]
@@ -194,7 +196,7 @@ def new_course(root: str | Path, assignments: str | Path = ASSIGNMENTS) -> Cours
         If there is something in the folder, or no assignments are found.
     """
     course, assignments = Course(root), Path(assignments)
-    if not all((assignments / name).is_dir() for name in COPIED):
+    if not all((assignments / name).is_dir() for name in COPIED_FOLDERS):
         raise ValueError(
             f"there are no assignments in {assignments}: an installed wheel holds none; download the project's folder "
             "and install it with `pip install -e .`, or say with --assignments where source/ and grader/ lie"
@@ -202,11 +204,11 @@ def new_course(root: str | Path, assignments: str | Path = ASSIGNMENTS) -> Cours
     if course.root.exists() and (not course.root.is_dir() or any(course.root.iterdir())):
         raise ValueError(f"{course.root} must be a new folder or an empty one: nothing is ever written over a course")
     course.root.mkdir(parents=True, exist_ok=True)
-    for name in COPIED:
+    for name in COPIED_FOLDERS:
         ignore = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints", "*.pyc")
         shutil.copytree(assignments / name, course.root / name, ignore=ignore)
     (course.root / "nbgrader_config.py").write_text(CONFIG, encoding="utf-8")
-    (course.root / STUDENTS).write_text(",".join(COLUMNS) + "\n", encoding="utf-8")
+    (course.root / STUDENTS).write_text(",".join(STUDENT_COLUMNS) + "\n", encoding="utf-8")
     (course.root / ".gitignore").write_text(IGNORED, encoding="utf-8")
     salt = course.root / SALT
     salt.touch(mode=0o600)

@@ -36,11 +36,11 @@ from traitlets import Integer, Unicode
 
 from ..formats import save_scans, save_world
 from .course import SCANS, Course
-from .grading.own_board import TRUTH
+from .grading.own_board import TRUTH_VARIABLE
 from .personal import personal_scans, personal_world
 
 # What a kernel needs of the teacher's environment; nothing else is handed on, for there may be passwords in it.
-KEPT = (
+KEPT_VARIABLES = (
     *("PATH", "LANG", "LC_ALL", "LC_CTYPE", "TZ", "VIRTUAL_ENV", "LD_LIBRARY_PATH"),
     *("SYSTEMROOT", "SYSTEMDRIVE", "WINDIR", "COMSPEC", "PATHEXT", "NUMBER_OF_PROCESSORS", "PROCESSOR_ARCHITECTURE"),
 )
@@ -62,10 +62,10 @@ _prepare()
 del _prepare
 """
 MEGABYTE = 2**20
-GRAVE = ("MemoryError", "SystemExit")  # also where a test meets them
-LONGEST = 200  # letters of an error that are told
-MOST_LETTERS = 200_000  # of one cell's output that are kept
-MARKED = re.compile(r"^[^#\n]*\.mark\(", re.MULTILINE)  # the last line of a hidden test
+ALWAYS_NOTED = ("MemoryError", "SystemExit")  # also where a test meets them
+ERROR_LETTERS = 200  # letters of an error that are told
+CELL_LETTERS = 200_000  # of one cell's output that are kept
+MARK_CALL = re.compile(r"^[^#\n]*\.mark\(", re.MULTILINE)  # the last line of a hidden test
 
 
 class CarefulExecute(Execute):  # type: ignore[misc]
@@ -112,7 +112,7 @@ class CarefulExecute(Execute):  # type: ignore[misc]
         """Fail hidden tests that show no number: nbgrader would give them all points."""
         for index, cell in enumerate(nb.cells):
             about = cell.metadata.get("nbgrader", {})
-            if cell.cell_type != "code" or not about.get("grade") or not MARKED.search(cell.source):
+            if cell.cell_type != "code" or not about.get("grade") or not MARK_CALL.search(cell.source):
                 continue
             results = [output for output in cell.outputs if output.output_type == "execute_result"]
             if any(output.output_type == "error" for output in cell.outputs):
@@ -145,7 +145,7 @@ class CarefulExecute(Execute):  # type: ignore[misc]
 
     def _get_timeout(self, cell: Any) -> Any:
         """Return a cell's time limit; nbclient asks for it."""
-        hidden = cell is not None and cell.metadata.get("nbgrader", {}).get("grade") and MARKED.search(cell.source)
+        hidden = cell is not None and cell.metadata.get("nbgrader", {}).get("grade") and MARK_CALL.search(cell.source)
         return self.tests_timeout if hidden else super()._get_timeout(cell)
 
     def _run(self, cell: Any, resources: Any, index: int) -> tuple[str, str] | None:
@@ -192,8 +192,8 @@ class CarefulExecute(Execute):  # type: ignore[misc]
         """Note a cell of the student's own that fails; that a test fails says its score."""
         cell = self.nb.cells[index]
         for error in (output for output in cell.outputs if output.output_type == "error"):
-            if error.ename in GRAVE or not cell.metadata.get("nbgrader", {}).get("grade"):
-                self._note(self.nb, index, error.ename, " ".join(error.evalue.split())[:LONGEST] or "fails")
+            if error.ename in ALWAYS_NOTED or not cell.metadata.get("nbgrader", {}).get("grade"):
+                self._note(self.nb, index, error.ename, " ".join(error.evalue.split())[:ERROR_LETTERS] or "fails")
 
     def _note(self, nb: Any, index: int, name: str, sentence: str) -> None:
         about = nb.cells[index].metadata.get("nbgrader", {})
@@ -225,7 +225,7 @@ class CarefulExecute(Execute):  # type: ignore[misc]
         home.mkdir(exist_ok=True)
         options["env"] = _environment(home, self.course)
         if (self.scratch / "truth.geojson").exists():
-            options["env"][TRUTH] = str(self.scratch / "truth.geojson")
+            options["env"][TRUTH_VARIABLE] = str(self.scratch / "truth.geojson")
         super().start_new_kernel(**options)
         self.groups += filter(None, [getattr(self.km.provisioner, "pgid", None)])
 
@@ -271,7 +271,7 @@ class CarefulExecute(Execute):  # type: ignore[misc]
     def output(self, outs: Any, msg: Any, display_id: Any, cell_index: int) -> Any:
         """Keep what a cell says, up to a limit: an endless loop may print all the time."""
         self.letters += len(str(msg["content"].get("text", "")))
-        if self.letters > MOST_LETTERS and msg["msg_type"] == "stream":
+        if self.letters > CELL_LETTERS and msg["msg_type"] == "stream":
             return None
         return super().output(outs, msg, display_id, cell_index)
 
@@ -281,7 +281,7 @@ def _environment(home: Path, course: str) -> dict[str, str]:
     fonts = Path(course) / ".primkit" / "matplotlib"  # the list of fonts takes seconds to make: one for all
     fonts.mkdir(parents=True, exist_ok=True)
     return {
-        **{name: os.environ[name] for name in KEPT if name in os.environ},
+        **{name: os.environ[name] for name in KEPT_VARIABLES if name in os.environ},
         **dict.fromkeys(("HOME", "USERPROFILE", "APPDATA", "TEMP", "TMP", "TMPDIR"), str(home)),
         **dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1"),
         "MPLCONFIGDIR": str(fonts),

@@ -1,4 +1,4 @@
-"""Grading: every submission of a problem set on its own, unattended.
+"""Grade: every submission of a problem set on its own, unattended.
 
 nbgrader's ``autograde`` runs once for each student, in a process of its own with a time limit, so that nothing that one
 submission does can cost another one. What was graded already and has not changed since is passed over.
@@ -12,18 +12,18 @@ from __future__ import annotations
 
 import json
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from .course import STEPS, Course
+from .course import SANITIZE_STEPS, Course
 from .handed_in import Fault, file_faults, strangers, tree_hash
 from .handing_back import hand_back, waiting
 from .moved import refuse_old_names
 from .running import nbgrader
 
-JOURNAL = "graded.json"
-SECONDS = 1800.0  # for one submission: far more than its cells' own limits come to
+SUBMISSION_SECONDS = 1800.0  # for one submission: far more than its cells' own limits come to
 
 
 def grade(
@@ -56,7 +56,7 @@ def grade(
     folders = [course.root / "submitted" / student / name for student in everybody]
     before, start = tree_hash(*folders), time.monotonic()
     journal = Journal(course, name)
-    counts = {"graded": 0, "unchanged": 0, "not graded": 0}
+    counts = Counter[str]()
     for number, student in enumerate(students, 1):
         verdict, line = _one(course, name, student, journal, again)
         counts[verdict] += 1
@@ -68,13 +68,9 @@ def grade(
     hand_back(course, name, journal.entries if counts["graded"] else journal.failed(), open_cells)
     same = tree_hash(*folders) == before
     took = time.monotonic() - start
-    told = ", ".join(f"{count} {words}" for words, count in counts.items() if count)
+    told = ", ".join(f"{counts[words]} {words}" for words in ("graded", "unchanged", "not graded") if counts[words])
     say(f"{len(students)} submission{'s' * (len(students) != 1)} in {took:.0f} s: {told}")
-    say(
-        "submitted/ is as it was"
-        if same
-        else "CHANGED: submitted/ is not as it was; see the journal for whose run it was"
-    )
+    say(f"submitted/ is {'as it was' if same else 'CHANGED: the journal tells whose run it was'}")
     if number := sum(map(len, open_cells.values())):
         answers, wait = ("answer", "waits") if number == 1 else ("answers", "wait")
         say(
@@ -92,9 +88,9 @@ def _one(course: Course, name: str, student: str, journal: Journal, again: bool)
         return "unchanged", "graded before, and not changed since"
     faults, start = file_faults(course, name, student), time.monotonic()
     if not faults:
-        steps = f"--Autograde.sanitize_preprocessors={STEPS}"  # also in a course that was made without
+        steps = f"--Autograde.sanitize_preprocessors={SANITIZE_STEPS}"  # also in a course that was made without
         words = ("autograde", name, f"--student={student}", "--force", steps)
-        done = nbgrader(course, *words, log=course.reports(name) / "log" / f"{student}.txt", seconds=SECONDS)
+        done = nbgrader(course, *words, log=course.reports(name) / "log" / f"{student}.txt", seconds=SUBMISSION_SECONDS)
         if done.code != 0:
             faults.append(Fault(student, "-", "not graded", f"nbgrader could not grade it: {done.reason}"))
     graded = not faults
@@ -124,7 +120,7 @@ class Journal:
     """What has been graded, in a file that is written after every student."""
 
     def __init__(self, course: Course, name: str) -> None:
-        self.path: Path = course.reports(name) / JOURNAL
+        self.path: Path = course.reports(name) / "graded.json"
         self.entries: dict[str, Any] = {}
         if self.path.is_file():
             self.entries = json.loads(self.path.read_text(encoding="utf-8"))

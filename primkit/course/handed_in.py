@@ -13,7 +13,7 @@ from pathlib import Path
 
 from .course import ID, STUDENTS, Course
 
-LARGEST = 50  # megabytes of a notebook: more is output that never ended
+MOST_MEGABYTES = 50  # megabytes of a notebook: more is output that never ended
 
 
 @dataclass(frozen=True)
@@ -42,8 +42,8 @@ def file_faults(course: Course, name: str, student: str) -> list[Fault]:
             others = ", ".join(sorted(other.name for other in folder.glob("*.ipynb"))) or "no notebook"
             faults.append((path.name, "missing", f"there is no {path.name}, found {others}"))
             continue
-        if path.stat().st_size > LARGEST * 2**20:
-            faults.append((path.name, "too large", f"has more than {LARGEST} MB: clear its outputs"))
+        if path.stat().st_size > MOST_MEGABYTES * 2**20:
+            faults.append((path.name, "too large", f"has more than {MOST_MEGABYTES} MB: clear its outputs"))
         elif wrong := _not_a_notebook(path):
             faults.append((path.name, "not a notebook", wrong))
     return [Fault(student, where, short, says) for where, short, says in faults]

@@ -59,9 +59,7 @@ def hand_back(course: Course, name: str, entries: Mapping[str, Any], open_cells:
                 page.write_text(PAGE.format(escape(notebook), escape(says)), encoding="utf-8")
             elif page.is_file():
                 html = page.read_text(encoding="utf-8")
-                html = re.sub(
-                    r'(<a href="#([\w.-]+)">)Test cell</a>', r"\1\2</a>", html
-                )  # which one, in the page's head
+                html = re.sub(r'(<a href="#([\w.-]+)">)Test cell</a>', r"\1\2</a>", html)  # in the page's head
                 if open_cells.get(student):
                     html = _marked_later(html, open_cells[student])
                 page.write_text(html, encoding="utf-8")

@@ -3,10 +3,10 @@
 In:  the teacher's ``source/`` and ``grader/``, and files: notebooks, wheels and other archives, folders, anything.
 Out: a ``Leak`` for each place, with what was found there.
 
-Code is compared piece by piece, ``PIECE`` tokens long. Spaces, line breaks, comments and the names of variables do not
-count: whoever renames them is found all the same. A text holds a solution when it has a good part of its pieces, for
-single pieces are in everybody's code. What stands openly in the notebooks, such as a function's first line and the
-visible tests, is no secret. Answers of fewer than ``LEAST`` tokens cannot be told from chance.
+Code is compared piece by piece, ``PIECE_TOKENS`` tokens long, without spaces, comments and the names of variables:
+whoever renames them is found all the same. A text holds a solution when it has ``LEAK_SHARE`` of its pieces, for single
+pieces are in everybody's code. What stands openly in the notebooks, such as a function's first line and the visible
+tests, is no secret. Not found: answers of fewer than ``LEAST_TOKENS`` tokens, which cannot be told from chance.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ from typing import Any
 
 from .course import SALT
 
-PIECE = 16  # tokens, about a line
-LEAST = 24  # a solution of fewer tokens is not looked for
+PIECE_TOKENS = 16  # about a line
+LEAST_TOKENS = 24  # of a solution that is looked for
 # Of the pieces. The grader's functions are many and small, and some of their lines are those of any geometry.
-SHARE = {"source": 0.35, "grader": 0.6}
+LEAK_SHARE = {"source": 0.35, "grader": 0.6}
 MARKS = tuple(f"{end} {what}" for what in ("SOLUTION", "HIDDEN TESTS", "MARK SCHEME") for end in ("BEGIN", "END"))
-SKIPPED = ("__pycache__", ".ipynb_checkpoints", ".git")
-PICTURES = ("image/png", "image/jpeg", "application/pdf")
+SKIPPED_FOLDERS = ("__pycache__", ".ipynb_checkpoints", ".git")
+PICTURE_TYPES = ("image/png", "image/jpeg", "application/pdf")
 
 TOKEN = re.compile(r"[^\W\d]\w*|\d[\d_.]*(?:e[-+]?\d+)?|\S", re.IGNORECASE)
 COMMENT = re.compile(r"#[^\n]*")
-KNOWN = {*keyword.kwlist, *dir(builtins), "np", "pk", "self"}
+KEPT_WORDS = {*keyword.kwlist, *dir(builtins), "np", "pk", "self"}
 
 Piece = tuple[str, ...]
 
@@ -64,7 +64,7 @@ class Secrets:
 
     def add(self, folder: str, where: str, code: str) -> None:
         """Add a solution; one that is too short is left out."""
-        if len(_tokens(code)) >= LEAST:
+        if len(_tokens(code)) >= LEAST_TOKENS:
             self.solutions[folder, where] = self.solutions.get((folder, where), set()) | set(pieces(code))
 
 
@@ -128,8 +128,8 @@ def pieces(text: str) -> Iterator[Piece]:
     seen = set[Piece]()
     for version in _versions(text):
         tokens = _tokens(version)
-        for start in range(len(tokens) - PIECE + 1):
-            piece = _renamed(tokens[start : start + PIECE])
+        for start in range(len(tokens) - PIECE_TOKENS + 1):
+            piece = _renamed(tokens[start : start + PIECE_TOKENS])
             if piece not in seen:
                 seen.add(piece)
                 yield piece
@@ -156,7 +156,7 @@ def _renamed(tokens: Sequence[str]) -> Piece:
     names: dict[str, str] = {}
     return tuple(
         token
-        if not (token[0].isalpha() or token[0] == "_") or token in KNOWN or (n and tokens[n - 1] == ".")
+        if not (token[0].isalpha() or token[0] == "_") or token in KEPT_WORDS or (n and tokens[n - 1] == ".")
         else names.setdefault(token, str(len(names)))
         for n, token in enumerate(tokens)
     )
@@ -185,12 +185,12 @@ def _found(text: str, secrets: Secrets, shapes: set[Piece]) -> Iterator[str]:
     for version in _versions(text):
         tokens = _tokens(version)
         shape = _shape(tokens)
-        for start in range(len(tokens) - PIECE + 1):
-            if shape[start : start + PIECE] in shapes:  # most are told by this alone
-                held.add(_renamed(tokens[start : start + PIECE]))
+        for start in range(len(tokens) - PIECE_TOKENS + 1):
+            if shape[start : start + PIECE_TOKENS] in shapes:  # most are told by this alone
+                held.add(_renamed(tokens[start : start + PIECE_TOKENS]))
     for (folder, where), solution in secrets.solutions.items():
         share = len(solution & held) / len(solution)
-        if share >= SHARE[folder]:
+        if share >= LEAK_SHARE[folder]:
             yield f"{where}, {100 * share:.0f} % of it"
 
 
@@ -203,7 +203,7 @@ def _texts(path: Path) -> Iterator[tuple[str, str, str]]:
     """Yield (file, place, text) of all texts in a file or folder."""
     if path.is_dir():
         for inner in sorted(path.rglob("*")):
-            if inner.is_file() and not set(inner.parts) & set(SKIPPED):
+            if inner.is_file() and not set(inner.parts) & set(SKIPPED_FOLDERS):
                 yield from _of_file(inner.as_posix(), inner.read_bytes())
     else:
         yield from _of_file(path.as_posix(), path.read_bytes())
@@ -235,7 +235,7 @@ def _of_notebook(nb: Any) -> Iterator[tuple[str, str]]:
             yield from ((f"cell {number}, attachment", _decoded(data)) for data in bundle.values())
         for output in cell.get("outputs") or ():
             for kind, data in (output.get("data") or {}).items():
-                if kind not in PICTURES:
+                if kind not in PICTURE_TYPES:
                     text = html.unescape(_text(data)) if isinstance(data, (str, list)) else json.dumps(data)
                     yield f"cell {number}, output", text
             yield from _strings(f"cell {number}, output", {k: v for k, v in output.items() if k != "data"})

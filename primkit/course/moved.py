@@ -8,7 +8,7 @@ Out: an ``OldName`` for each file and name; none when the course is of this edit
 
 >>> OldName("grader/parts.py", "primkit.grading").mend
 'write primkit.course.grading in its place, everywhere in this file'
->>> OLD.findall("primkit.personal.personal_scans, primkit.personal_world")  # only a whole word is the old name
+>>> OLD_NAME.findall("primkit.personal.personal_scans, primkit.personal_world")  # only a whole word is the old name
 ['primkit.personal']
 """
 
@@ -31,8 +31,8 @@ MOVED = {
     "primkit.personal": "primkit.course.personal",
     "primkit.teaching": "primkit.course",
 }
-OLD = re.compile(rf"\b({'|'.join(map(re.escape, MOVED))})\b")
-PLACES = ("nbgrader_config.py", "grader/**/*.py", "source/{0}/*.ipynb", "release/{0}/*.ipynb")  # of a problem set
+OLD_NAME = re.compile(rf"\b({'|'.join(map(re.escape, MOVED))})\b")
+NAMED_IN = ("nbgrader_config.py", "grader/**/*.py", "source/{0}/*.ipynb", "release/{0}/*.ipynb")  # of a problem set
 
 
 @dataclass(frozen=True)
@@ -56,9 +56,9 @@ class OldName:
 
 def old_names(course: Course, name: str = "*") -> Iterator[OldName]:
     """Yield the old names in a course, or in what one problem set needs, file by file."""
-    for place in PLACES:
+    for place in NAMED_IN:
         for path in sorted(course.root.glob(place.format(name))):
-            found = set(OLD.findall(path.read_text(encoding="utf-8", errors="replace")))
+            found = set(OLD_NAME.findall(path.read_text(encoding="utf-8", errors="replace")))
             yield from (OldName(path.relative_to(course.root).as_posix(), old) for old in MOVED if old in found)
 
 

@@ -20,7 +20,7 @@ from .grading.mark import MIME
 from .handed_in import Fault, strangers
 
 UNNAMED = "wrong in another way"
-WORDS = 60  # letters of a visible test's own words
+VISIBLE_LETTERS = 60  # letters of a visible test's own words
 
 
 @dataclass
@@ -166,7 +166,7 @@ def _visible(cell: str, name: str, says: str) -> tuple[str, str]:
     if name == "NameError" and f"'{cell.removesuffix('-visible')}'" in says:
         return "no such function", says
     words = " ".join(says.split())
-    return (shorten(words, WORDS, placeholder=" ...") if name == "AssertionError" and words else name), says
+    return (shorten(words, VISIBLE_LETTERS, placeholder=" ...") if name == "AssertionError" and words else name), says
 
 
 def _shown(outputs: Sequence[Any]) -> tuple[Any, tuple[str, str] | None]:

@@ -39,12 +39,12 @@ PURPOSE = b"primkit personal world 1:"  # the same salt for something else gives
 
 JITTER = 0.05  # m, each way, around the quadrant's middle
 # Of the circle that the corners lie on, in m. The middle lies at most 0.275 m out, so that corners stay within 0.375 m.
-REACH = (0.085, 0.100)
+CORNER_REACH = (0.085, 0.100)
 RADIUS = (0.06, 0.09)
 WIDTH, HEIGHT = (0.12, 0.16), (0.08, 0.11)  # m: half a diagonal is at most 0.098 m, and no rectangle is a square
 # How far a corner may be moved along that circle. Corners then have 40 to 80 degrees in a triangle, and 84 to 132 in a
 # pentagon; sides are at least 10 cm and 6 cm long.
-SHIFT = {3: np.radians(20), 5: np.radians(12)}
+CORNER_SHIFT = {3: np.radians(20), 5: np.radians(12)}
 
 
 def personal_world(student_id: str, *, salt: str) -> World:
@@ -112,5 +112,5 @@ def _board(rng: np.random.Generator) -> World:
 def _on_a_circle(n: int, middle: np.ndarray, rng: np.random.Generator) -> Polygon:
     """Return an irregular polygon whose n corners lie on a circle around ``middle``."""
     turn = rng.uniform(0, 2 * np.pi)
-    bearings = turn + 2 * np.pi * np.arange(n) / n + rng.uniform(-SHIFT[n], SHIFT[n], n)
-    return Polygon(middle + rng.uniform(*REACH) * np.column_stack([np.cos(bearings), np.sin(bearings)]))
+    bearings = turn + 2 * np.pi * np.arange(n) / n + rng.uniform(-CORNER_SHIFT[n], CORNER_SHIFT[n], n)
+    return Polygon(middle + rng.uniform(*CORNER_REACH) * np.column_stack([np.cos(bearings), np.sin(bearings)]))

@@ -8,7 +8,6 @@ Out: lines for the screen; ``overview.csv`` (tasks and parts), ``wrong.csv`` (ea
 from __future__ import annotations
 
 import csv
-import io
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ from typing import Any
 from ..formats.files import write_atomically
 from ..plots.story import save_figure
 from ..plots.teaching import class_figure
+from ..table import Table, as_csv
 from .course import Course
 from .grade import Journal
 from .handed_in import listed
@@ -23,7 +23,11 @@ from .handing_back import state, waiting
 from .overview import Line, Overview, overview
 from .running import nbgrader
 
-USUAL = 3  # wrong answers that are told for each part
+USUAL_FAULTS = 3  # wrong answers that are told for each part
+OVERVIEW_HEADER = (
+    *("task", "part", "of", "students", "mean", "share_right", "to_mark_by_hand"),
+    *(f"{what}_{k}" for k in range(1, USUAL_FAULTS + 1) for what in ("wrong", "count")),
+)
 
 
 def report(course: Course, name: str) -> Iterator[str]:
@@ -31,15 +35,12 @@ def report(course: Course, name: str) -> Iterator[str]:
     seen = overview(course, name)
     folder = course.reports(name)
     tables = {
-        "overview.csv": _overview_rows(seen),
-        "wrong.csv": [("student", "task", "part", "name", "what"), *seen.wrong],
-        "faults.csv": [
-            ("student", "cell", "name", "what"),
-            *((f.student, f.cell, f.name, f.says) for f in seen.faults),
-        ],
+        "overview.csv": (OVERVIEW_HEADER, _overview_rows(seen)),
+        "wrong.csv": (("student", "task", "part", "name", "what"), seen.wrong),
+        "faults.csv": (("student", "cell", "name", "what"), (fault.data().values() for fault in seen.faults)),
     }
-    for file, rows in tables.items():
-        write_atomically(folder / file, _csv(rows))
+    for file, (header, rows) in tables.items():
+        write_atomically(folder / file, _csv(header, rows))
     parts = seen.parts()
     figure = class_figure(
         name,
@@ -80,55 +81,43 @@ def _with_states(course: Course, path: Path) -> None:
                     listed=not students or student in students,
                 )
             )
-    write_atomically(path, _csv([[*head, "state"], *rows]))
+    write_atomically(path, _csv([*head, "state"], rows))
 
 
-def _usual(line: Line, most: int = USUAL) -> list[tuple[str, int]]:
+def _usual(line: Line) -> list[tuple[str, int]]:
     """Return the most frequent wrong answers, the most frequent first; of as frequent ones, Python's errors last."""
-    return sorted(line.wrong.items(), key=lambda item: (-item[1], item[0][:1].isupper(), item[0]))[:most]
+    return sorted(line.wrong.items(), key=lambda item: (-item[1], item[0][:1].isupper(), item[0]))[:USUAL_FAULTS]
 
 
 def _said(seen: Overview) -> Iterator[str]:
-    yield (f"{seen.name}: {seen.handed_in} handed in, {seen.graded} graded; mean {seen.mean:.1f} of {seen.of:g} points")
-    yield ""
-    rows = [("task, part", "mean", "right", "usual wrong answers")]
+    title = f"{seen.name}: {seen.handed_in} handed in, {seen.graded} graded; mean {seen.mean:.1f} of {seen.of:g} points"
+    rows = []
     for line in (line for line in seen.lines if not line.part):
         rows.append(_row(line.task, line))
         rows += [_row(f"  {part.part}", part) for part in seen.lines if part.part and part.task == line.task]
-    widths = [max(len(row[k]) for row in rows) for k in range(3)]
-    rows.insert(1, ("-" * widths[0], "-" * widths[1], "-" * widths[2], "-" * len(rows[0][3])))
-    for row in rows:
-        yield "  ".join([row[0].ljust(widths[0]), row[1].rjust(widths[1]), row[2].rjust(widths[2]), row[3]]).rstrip()
+    yield str(Table(("task, part", "mean", "right", "usual wrong answers"), rows, title))
     if seen.faults:
         yield ""
         yield f"To look at ({len(seen.faults)}):"
         yield from (f"  {fault.student}  {fault.cell}  {fault.name}: {fault.says}" for fault in seen.faults)
 
 
-def _row(name: str, line: Line) -> tuple[str, str, str, str]:
+def _row(name: str, line: Line) -> tuple[str, ...]:
     usual = "; ".join(f"{count} x {fault}" for fault, count in _usual(line)) if line.part or line.wrong else ""
     if line.open:
         usual = f"{line.open} to be marked by hand" + (f"; {usual}" if usual else "")
     return name, f"{line.mean:.2f} of {line.of:g}", f"{100 * line.right:.0f} %", usual
 
 
-def _overview_rows(seen: Overview) -> Iterable[Sequence[Any]]:
-    yield (
-        *("task", "part", "of", "students", "mean", "share_right", "to_mark_by_hand"),
-        *(f"{what}_{k}" for k in range(1, USUAL + 1) for what in ("wrong", "count")),
-    )
+def _overview_rows(seen: Overview) -> Iterator[Sequence[Any]]:
     for line in seen.lines:
         usual = [entry for pair in _usual(line) for entry in pair]
         numbers = (line.of, len(line.points), round(line.mean, 4), round(line.right, 4), line.open)
-        yield line.task, line.part, *numbers, *usual, *[""] * (2 * USUAL - len(usual))
+        yield line.task, line.part, *numbers, *usual, *[""] * (2 * USUAL_FAULTS - len(usual))
 
 
-def _csv(rows: Iterable[Sequence[Any]]) -> bytes:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    for row in rows:
-        writer.writerow(map(_harmless, row))
-    return text.getvalue().encode("utf-8")
+def _csv(header: Sequence[str], rows: Iterable[Iterable[Any]]) -> bytes:
+    return as_csv(header, ([_harmless(cell) for cell in row] for row in rows)).encode()
 
 
 def _harmless(cell: Any) -> Any:

@@ -3,7 +3,7 @@
 ``primkit teach grade --help`` ends with these words.
 """
 
-WORDS = """\
+UNTRUSTED_WORDS = """\
 what grading runs, and what it can reach:
   Grading runs the code that students hand in, on this computer and as you: it
   can read and write what you can, and use the network. Each submission runs

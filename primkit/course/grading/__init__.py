@@ -1,8 +1,7 @@
 """Grading: points for a student's function, part by part; what the hidden tests of a problem set call.
 
-Beside the story. A ``Task`` is made of parts, and each part of a ``Check`` and its points. A part is right or it is
-not: its points are all or none. Whatever a part meets, an endless loop, an exception, a changed argument, costs that
-part alone. There are no solutions in here: those of the problem sets stay with the teacher.
+A ``Task`` is made of parts, and each part of a ``Check`` and its points, all or none. Whatever a part meets, an endless
+loop, an exception, a changed argument, costs that part alone.
 
 In:  the student's function, or its name and where it is looked up.
 Out: the points, and a table that says for each part what is off.
@@ -16,15 +15,7 @@ Out: the points, and a table that says for each part what is off.
 half: 0 of 2 points
 ○ 0 of 2  halves lengths: there is no function half: run its cell, and keep its name.
 
-The rooms, each of which imports only those before it:
-
-============  ======================================================
-``limit.py``  a time limit, and what it can stop
-``cells.py``  why a function is missing
-``table.py``  ``Mark``: the points as text, as HTML, and for a report
-``task.py``   ``Part`` and ``Task``
-``truth.py``  the student's own board, while it is graded
-============  ======================================================
+Not here: solutions. Those of the problem sets stay with the teacher.
 """
 
 from .limit import OutOfTime, TimeLimit

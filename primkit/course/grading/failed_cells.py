@@ -1,4 +1,4 @@
-"""Cells: why a student's function is missing, when the cell that should define it has failed.
+"""Failed cells: why a student's function is missing, when the cell that should define it has failed.
 
 In:  what the notebook's cells did, once ``watch`` has been called in its kernel; ``primkit teach grade`` does so.
 Out: for the name of a function the error of its cell, with the line; ``None`` where nothing is known.
@@ -10,16 +10,16 @@ import re
 from types import TracebackType
 from typing import Any
 
-KEPT = "_primkit_failed"  # an attribute of the shell: source -> the error's name, and where and what it was
+FAILED_CELLS = "_primkit_failed"  # an attribute of the shell: source -> the error's name, and where and what it was
 
 
 def watch() -> None:
     """Keep the errors of this kernel's cells, from now on."""
     shell = _shell()
-    if shell is None or hasattr(shell, KEPT):
+    if shell is None or hasattr(shell, FAILED_CELLS):
         return
     failed: dict[str, tuple[str, str]] = {}
-    setattr(shell, KEPT, failed)
+    setattr(shell, FAILED_CELLS, failed)
 
     def after(result: Any) -> None:
         error = result.error_before_exec or result.error_in_exec
@@ -32,7 +32,7 @@ def watch() -> None:
 def failure(name: str) -> tuple[str, str] | None:
     """Return the error's name and a sentence about the last failed cell that defines a function."""
     defines = re.compile(rf"^[ \t]*(async +)?def +{re.escape(name)}\b", re.MULTILINE)
-    failed: dict[str, tuple[str, str]] = getattr(_shell(), KEPT, {})
+    failed: dict[str, tuple[str, str]] = getattr(_shell(), FAILED_CELLS, {})
     found = [told for source, told in failed.items() if defines.search(source)]
     return found[-1] if found else None
 

@@ -36,9 +36,9 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
-AGAIN = 0.05  # seconds from one interruption to the next, for code that swallowed the first
+REPEAT_SECONDS = 0.05  # seconds from one interruption to the next, for code that swallowed the first
 # Code in these folders is not a student's: its own cleaning up is never interrupted.
-LIBRARIES = tuple({sys.prefix, sys.base_prefix, str(Path(__file__).resolve().parents[2])})
+OWN_FOLDERS = tuple({sys.prefix, sys.base_prefix, str(Path(__file__).resolve().parents[2])})
 
 
 class OutOfTime(BaseException):
@@ -92,7 +92,7 @@ class TimeLimit:
                 return
             sys.settrace(lambda *_event: None)  # functions that are called from now on are not traced
             for each in block:
-                if not each.f_code.co_filename.startswith(LIBRARIES):
+                if not each.f_code.co_filename.startswith(OWN_FOLDERS):
                     each.f_trace = next_line
             raise self._over()
 
@@ -102,7 +102,7 @@ class TimeLimit:
             sys.settrace(tracing)
 
         signal.signal(signal.SIGALRM, ring)
-        signal.setitimer(signal.ITIMER_REAL, self.seconds, AGAIN)
+        signal.setitimer(signal.ITIMER_REAL, self.seconds, REPEAT_SECONDS)
         return stop
 
     def _second_thread(self) -> Callable[[], None]:
@@ -113,7 +113,7 @@ class TimeLimit:
         def watch() -> None:
             wait = self.seconds
             while not done.wait(wait):
-                wait = AGAIN
+                wait = REPEAT_SECONDS
                 if self._block(sys._current_frames().get(this)) is not None:
                     interrupt(ctypes.c_ulong(this), ctypes.py_object(OutOfTime))
 

@@ -1,4 +1,4 @@
-"""Table: the points of a task, part by part, as text, as HTML, and as data for the report on a class.
+"""Mark: the points of a task, part by part, as text, as HTML, and as data for the report on a class.
 
 In:  for each part its points and its check's answer.
 Out: a ``Mark``. A notebook shows the table; the data lie beside it under a type of their own, ``MIME``.
@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
-from ...checks.answer import COLORS, SIGNS, Answer
+from ...checks.answer import VERDICT_COLORS, VERDICT_SIGNS, Answer
 
 MIME = "application/vnd.primkit.mark+json"
 
@@ -94,14 +94,16 @@ class Mark:
             told = [] if self.common else row.off.splitlines()
             off = "".join(f"\n    {line}" for line in told[1:])
             first = f": {told[0]}" if told else ""
-            lines.append(f"{SIGNS[row.answer.verdict]} {row.points:g} of {row.of:g}  {row.says}{first}{off}")
+            lines.append(f"{VERDICT_SIGNS[row.answer.verdict]} {row.points:g} of {row.of:g}  {row.says}{first}{off}")
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        head = "".join(f'<th scope="col" style="{LEFT}">{word}</th>' for word in ("points", "part", "what is off"))
+        head = "".join(
+            f'<th scope="col" style="{CELL_STYLE}">{word}</th>' for word in ("points", "part", "what is off")
+        )
         once = f'<br><span style="font-weight:normal">{_lines(self.common)}</span>' if self.common else ""
         return (
-            f'<table style="border-collapse:collapse;line-height:1.5"><caption style="{LEFT};font-weight:bold;'
+            f'<table style="border-collapse:collapse;line-height:1.5"><caption style="{CELL_STYLE};font-weight:bold;'
             f'color:inherit">{escape(self._headline)}{once}</caption><thead><tr>{head}</tr></thead>'
             f"<tbody>{''.join(_html_row(row, told=bool(self.common)) for row in self.rows)}</tbody></table>"
         )
@@ -114,12 +116,13 @@ def _lines(text: str) -> str:
     return escape(text).replace("\n", "<br>")
 
 
-LEFT = "text-align:left;vertical-align:top;padding:2px 12px 2px 0"
+CELL_STYLE = "text-align:left;vertical-align:top;padding:2px 12px 2px 0"
 
 
 def _html_row(row: Row, *, told: bool = False) -> str:
     """Return a part's row; what is off is left out when it is told above the table."""
     verdict = row.answer.verdict
-    sign = f'<b style="color:{COLORS[verdict]}">{SIGNS[verdict]}&nbsp;{row.points:g}&nbsp;of&nbsp;{row.of:g}</b>'
+    points = f"{VERDICT_SIGNS[verdict]} {row.points:g} of {row.of:g}".replace(" ", "&nbsp;")
+    sign = f'<b style="color:{VERDICT_COLORS[verdict]}">{points}</b>'
     off = "" if row.answer.right else f"<i>{verdict}</i>" + ("" if told else f": {_lines(row.off)}")
-    return "<tr>" + "".join(f'<td style="{LEFT}">{cell}</td>' for cell in (sign, escape(row.says), off)) + "</tr>"
+    return "<tr>" + "".join(f'<td style="{CELL_STYLE}">{cell}</td>' for cell in (sign, escape(row.says), off)) + "</tr>"

@@ -1,4 +1,4 @@
-"""Truth: the board behind the scans that a student got, for the hidden tests of the last problem set.
+"""Own board: the one behind the scans that a student got, for the hidden tests of the last problem set.
 
 In:  while a submission is graded, the environment variable ``PRIMKIT_TRUTH``: a map that ``primkit teach grade`` has
      made from the student's id and the salt. The kernel, which runs the student's code, gets neither of the two.
@@ -16,13 +16,13 @@ from ...formats import load_world
 from ...world import World
 from ..personal import personal_world
 
-TRUTH = "PRIMKIT_TRUTH"
+TRUTH_VARIABLE = "PRIMKIT_TRUTH"
 DEMONSTRATION = ("demonstration", "the salt of the demonstration")  # known to everybody
 
 
 def personal_truth() -> World:
     """Return the board that the student's scans show."""
-    path = os.environ.get(TRUTH)
+    path = os.environ.get(TRUTH_VARIABLE)
     if path:
         return load_world(path)
     student_id, salt = DEMONSTRATION

@@ -27,11 +27,11 @@ from .failed_cells import failure
 from .limit import OutOfTime, TimeLimit
 from .mark import Mark, Row
 
-SECONDS = 5.0  # for each part; a check with its few hundred cases needs less than one
+PART_SECONDS = 5.0  # for each part; a check with its few hundred cases needs less than one
 
 
-EVERY = re.compile(r"in (\d+) of \1 cases\.")  # all of them are wrong
-FORM = re.compile(  # how judges begin what they expect, when a result has another form
+ALL_WRONG = re.compile(r"in (\d+) of \1 cases\.")  # all of them are wrong
+OTHER_FORM = re.compile(  # how judges begin what they expect, when a result has another form
     r"expected (a number such as|numbers in|points in an array|one label for|a circle:|a line:|a list|a set of)"
 )
 
@@ -111,7 +111,11 @@ class Task:
         return float(sum(part.points for part in self.parts))
 
     def mark(
-        self, function: Callable[..., Any] | str, scope: Mapping[str, Any] | None = None, *, seconds: float = SECONDS
+        self,
+        function: Callable[..., Any] | str,
+        scope: Mapping[str, Any] | None = None,
+        *,
+        seconds: float = PART_SECONDS,
     ) -> float:
         """Return the points, and show the table where a notebook can.
 
@@ -129,7 +133,11 @@ class Task:
         return mark.points
 
     def marked(
-        self, function: Callable[..., Any] | str, scope: Mapping[str, Any] | None = None, *, seconds: float = SECONDS
+        self,
+        function: Callable[..., Any] | str,
+        scope: Mapping[str, Any] | None = None,
+        *,
+        seconds: float = PART_SECONDS,
     ) -> Mark:
         """Return points and table together; see ``mark``."""
         seconds = as_positive(seconds, "seconds")
@@ -154,11 +162,11 @@ def _missing(name: str) -> Answer:
 
 def _named(answer: Answer) -> Answer:
     """Name what is wrong in any task: nothing is returned, or something of another form than was asked for."""
-    if answer.verdict != "wrong" or answer.fault is not None or not EVERY.match(answer.says):
+    if answer.verdict != "wrong" or answer.fault is not None or not ALL_WRONG.match(answer.says):
         return answer
     if "is there a return?" in answer.says:
         return replace(answer, fault="returns nothing")
-    return replace(answer, fault="returns what cannot be judged") if FORM.search(answer.says) else answer
+    return replace(answer, fault="returns what cannot be judged") if OTHER_FORM.search(answer.says) else answer
 
 
 def _show(mark: Mark) -> None:
