@@ -4,8 +4,7 @@ In:  a ``World`` and a ``Lidar``.
 Out: ``Run``, one for each way to move; together a ``Comparison``, which prints as a table.
 
 >>> from primkit.shapes import Circle
->>> world = World([Circle((0.2, 0.1), 0.06)])
->>> Comparison((from_waypoints(world, Lidar(), 0), by_exploring(world, Lidar(), 0)))
+>>> Comparison(automatic_runs(World([Circle((0.2, 0.1), 0.06)]), Lidar(), rng=0))
             scans  robot time  found  score
 ----------  -----  ----------  -----  -----  ---------------------------------------------------------------
 way-points  76     7.7 s       1      1.00   the robot is set down at each; the ways between are not counted
@@ -80,7 +79,12 @@ class Comparison:
         return self.table()._repr_html_()
 
 
-def from_waypoints(world: World, lidar: Lidar, rng: int) -> Run:
+def automatic_runs(world: World, lidar: Lidar, rng: int) -> tuple[Run, Run]:
+    """Return what the two automatic movements find on a board."""
+    return _scan_from_waypoints(world, lidar, rng), _explore(world, lidar, rng)
+
+
+def _scan_from_waypoints(world: World, lidar: Lidar, rng: int) -> Run:
     """Scan from the paper's way-points, all of whose periods count, and find what is there."""
     poses = teleport_poses(world)
     grid = Grid()
@@ -91,7 +95,7 @@ def from_waypoints(world: World, lidar: Lidar, rng: int) -> Run:
     return Run("way-points", len(poses), time, len(found), score, note, poses[:, :2])
 
 
-def by_exploring(world: World, lidar: Lidar, rng: int) -> Run:
+def _explore(world: World, lidar: Lidar, rng: int) -> Run:
     """Let the robot find its own way, and find what is there."""
     tour = explore(world, lidar, rng=rng)
     score, places = evaluate(list(tour.found), world).weighted_accuracy, tour.poses[:, :2]
