@@ -83,11 +83,6 @@ def ring_of(shape: Shape) -> Floats:
     return np.vstack([ring, ring[:1]])
 
 
-def share_seen(one: Detection) -> float:
-    """Return how much of a shape's outline has points of its own near it, 0 to 1."""
-    return float(is_seen(ring_of(one.shape), one.points).mean())
-
-
 def _name(one: Detection) -> str:
     """Return kind and dimensions in millimetres; a question mark for what was not measured."""
     lengths = [f"{1000 * d:.0f}" if known else "?" for d, known in zip(one.shape.dimensions, one.measured, strict=True)]

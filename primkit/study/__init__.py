@@ -28,7 +28,7 @@ from .estimate import Estimate
 from .experiment import Experiment, Run, perform, run
 from .journal import JOURNAL, make_folder, n_rows
 from .many import METHODS, maps_in, run_study
-from .oracle import ORACLE, Oracle, oracle_fit, share_seen, shares_seen, told_points
+from .oracle import ORACLE, Oracle, oracle_fit, shares_seen, told_points
 from .paper_table import Line, PaperTable
 from .published import PUBLISHED, rows_as_csv, tables, write_tables
 from .row import Row, Score
@@ -37,7 +37,7 @@ from .seen_table import SeenLine, SeenTable, seen_table
 __all__ = ["run_study", "on_cluster", "METHODS", "maps_in", "Experiment", "run", "Run", "perform", "Row", "Score"]
 __all__ += ["tables", "PaperTable", "Line", "PUBLISHED", "rows_as_csv", "write_tables", "Estimate"]
 __all__ += ["JOURNAL", "make_folder", "n_rows"]
-__all__ += ["ORACLE", "Oracle", "told_points", "oracle_fit", "share_seen", "shares_seen"]
+__all__ += ["ORACLE", "Oracle", "told_points", "oracle_fit", "shares_seen"]
 __all__ += ["seen_table", "SeenTable", "SeenLine"]
 __all__ += ["accuracy_study", "run_accuracy", "AccuracyTable", "AccuracyLine", "accuracy_as_csv"]
 __all__ += ["run_partial", "PartialTable", "PartialLine", "SWEEPS", "REMEDIES", "UNTUNED"]

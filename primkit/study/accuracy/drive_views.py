@@ -25,9 +25,10 @@ from ...evaluation import match
 from ...lidar import Lidar
 from ...measure import Detection
 from ...pipeline import ROBUST
+from ...seen import share_seen
 from ...shapes import Circle, Kind, Shape
 from ..experiment import Experiment, run
-from ..oracle import exact_hits, share_seen
+from ..oracle import exact_hits
 from .sweeps import UNTUNED, roomy_world
 
 N_SHAPES = 4
