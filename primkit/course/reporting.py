@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from ..formats.files import write_atomically
+from ..plots.class_marks import plot_class
 from ..plots.story import save_figure
-from ..plots.teaching import class_figure
 from .course import Course
 from .grade import Journal
 from .handed_in import listed
@@ -41,7 +41,7 @@ def report(course: Course, name: str) -> Iterator[str]:
     for file, rows in tables.items():
         write_atomically(folder / file, _csv(rows))
     parts = seen.parts()
-    figure = class_figure(
+    figure = plot_class(
         name,
         seen.graded,
         [(line.task, line.part, line.right, (_usual(line) or [("", 0)])[0]) for line in parts if not line.open],
