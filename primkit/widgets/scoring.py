@@ -198,10 +198,7 @@ def diagram() -> Picture:
     return Picture(side_by_side(panels, captions), "Diagram: one-to-one matching, in list order and all together")
 
 
-TRUE, FOUND = (
-    np.array([(0.0, 0.04), (0.075, 0.04)]),
-    np.array([(0.044, 0.009), (0.106, 0.015)]),
-)  # m: the diagram's
+TRUE, FOUND = np.array([[(0.0, 0.04), (0.075, 0.04)], [(0.044, 0.009), (0.106, 0.015)]])  # m: the diagram's
 
 
 def _pairing(pairs: list[tuple[int, int]], title: str, note: str) -> str:
