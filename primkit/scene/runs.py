@@ -28,24 +28,10 @@ from ..world import World
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What came of one way to move.
+    """What came of one way to move: ``"by hand"``, ``"way-points"`` or ``"explore"``.
 
-    Parameters
-    ----------
-    name : str
-        ``"by hand"``, ``"way-points"`` or ``"explore"``.
-    n_scans : int
-        How many scans were taken.
-    robot_time : float
-        Seconds that the robot took, computing left out.
-    n_found : int
-        How many shapes were found.
-    score : float
-        Their weighted accuracy, 0 to 1.
-    note : str
-        What the time is made of.
-    way : array, shape (N, 2)
-        Where it scanned, metres.
+    Scans, seconds that the robot took (``note`` says what for), shapes found and their weighted accuracy, and the
+    ``way``, shape (N, 2): where it scanned, metres.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Manual: how right the shapes of a drive are, by how much of their outline it saw.
+"""Seen table: how right the shapes of a drive are, by how much of their outline it saw.
 
 In:  the rows of a study with manual movement.
 Out: a ``Table``: for each method, the shapes that were seen on at least 60 % of their outline, and the others.
@@ -6,8 +6,7 @@ Out: a ``Table``: for each method, the shapes that were seen on at least 60 % of
 >>> print(str(seen_table([])).splitlines()[0])
 Shapes by how much of their outline was seen, manual movement
 
-Whoever drives leaves something out, and what was never seen nobody can measure. Tables 3 and 4 count it all the same;
-here each shape stands for itself.
+Tables 3 and 4 count shapes that a drive left out as wrong; here each shape stands for itself, by what was seen of it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Views: the shapes that one drive saw in part, and what was made of them.
+"""Drive views: the shapes that one drive saw in part, and what was made of them.
 
 In:  the sensor's noise, the number of the drive, a seed.
 Out: a ``View`` of each shape that was seen on 40 to 90 % of its outline.

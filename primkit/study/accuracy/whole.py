@@ -1,4 +1,4 @@
-"""Together: the whole accuracy study, one sweep after the other, and its files.
+"""Whole: the accuracy study, one sweep after the other, and its files.
 
 In:  names of sweeps, a number of maps, a folder.
 Out: a table for each, as it is done; in the folder ``accuracy.csv``, ``partial.csv`` and the journal.
