@@ -50,6 +50,11 @@ def seen_shares(shape: Shape, points: Floats) -> tuple[float, ...]:
     return shares_of(places_between(shape.vertices, shape.vertices + shape.edges), points)
 
 
+def share_seen(shape: Shape, points: Floats) -> float:
+    """Return the share of a whole outline that was seen, 0 to 1."""
+    return float(is_seen(shape.outline(400), points).mean())
+
+
 def places_between(begin: Floats, end: Floats) -> Floats:
     """Return places along K sides, shape (K, 2) each for their ends -> (K, PLACES_PER_SIDE, 2)."""
     steps = (np.arange(PLACES_PER_SIDE) + 0.5)[:, None] / PLACES_PER_SIDE

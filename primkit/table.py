@@ -1,7 +1,7 @@
 r"""Table: whatever the kit tells in rows, as text, as HTML and as CSV.
 
 In:  the names of the columns, and rows of texts; a row of a single text is the heading of those below it.
-Out: a ``Table``: ``print`` it, or end a notebook's cell with it. ``as_csv`` writes rows of numbers.
+Out: a ``Table``: ``print`` it, end a notebook's cell with it, or write its ``csv()``.
 
 >>> print(Table(("", "total"), [("2 maps",), ("ROBUST", "1.000")], notes=("total: from 0 to 1.",)))
          total
@@ -13,7 +13,7 @@ total: from 0 to 1.
 >>> as_csv(["a", "b"], [(0.1 + 0.2, None)])
 'a,b\n0.3,\n'
 
-Not here: the rows themselves; the nouns that show as a table (``Report`` and others) have a method ``table()``.
+Not here: what the rows say; the nouns that show as a table (``Report`` and others) have a method ``table()``.
 """
 
 from __future__ import annotations
@@ -47,6 +47,12 @@ class Table:
         What a reader must know, one thought each.
     folds : sequence of int
         At these columns text goes on below, with the first column once more: for tables too wide for a terminal.
+    lines : sequence
+        What the rows tell: objects with all their numbers.
+    numbers : sequence of sequences
+        What ``csv()`` writes: the names of its columns, then its rows.
+    file : str
+        What the CSV is called in a study's folder.
     """
 
     header: Sequence[str]
@@ -54,6 +60,13 @@ class Table:
     title: str = ""
     notes: Sequence[str] = ()
     folds: Sequence[int] = ()
+    lines: Sequence[Any] = ()
+    numbers: Sequence[Sequence[Any]] = ()
+    file: str = ""
+
+    def csv(self) -> str:
+        """Return the numbers as CSV."""
+        return as_csv(self.numbers[0], self.numbers[1:])
 
     def __str__(self) -> str:
         blocks = [self._block(range(*ends)) for ends in pairwise((1, *self.folds, len(self.header)))]

@@ -30,7 +30,6 @@ from primkit.study import (
     PUBLISHED,
     Experiment,
     Line,
-    PaperTable,
     Row,
     Score,
     estimate,
@@ -43,6 +42,7 @@ from primkit.study import (
     run_study,
     tables,
 )
+from primkit.study.paper_table import paper_table
 from primkit.world import World, random_world
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -519,7 +519,7 @@ def test_a_table_fits_a_plain_terminal(rows):
 
 def test_a_table_s_html_says_the_same_as_its_text():
     line = Line("a < b", "A & B", "within 5 mm", 2, HALF, NONE, PERFECT, 7.7, 0.25)
-    table = PaperTable("<One> & two", (line,), ("a & b",))
+    table = paper_table("<One> & two", (line,), ("a & b",))
     root = ET.fromstring(f"<div>{table._repr_html_()}</div>")
     assert list(root.itertext()) == [
         *("<One> & two", "total", "shape", "centre", "dimensions", "time [s]", "a < b, 2 maps"),

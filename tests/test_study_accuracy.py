@@ -28,7 +28,6 @@ from primkit.study import (
     UNTUNED,
     AccuracyTable,
     Experiment,
-    PartialTable,
     Row,
     Score,
     accuracy_as_csv,
@@ -45,7 +44,7 @@ from primkit.study import (
 )
 from primkit.study.accuracy.accuracy_table import level_lines
 from primkit.study.accuracy.drive_views import View, share_seen, unseen_sides, view_of
-from primkit.study.accuracy.partial import partial_line
+from primkit.study.accuracy.partial import partial_line, partial_table
 from primkit.study.accuracy.sweeps import PLAIN, Condition, Level, experiments, n_runs
 from primkit.study.estimate import Estimate, mean_of, pooled_share, ratio_of, share_of
 from primkit.study.oracle import NOBODY
@@ -361,7 +360,7 @@ def test_a_study_continues_where_it_stopped(gaps, monkeypatch):
 
 def test_the_study_writes_what_it_yields(tmp_path):
     first, second, views = accuracy_study(["gap", "spurious", "partial"], 2, tmp_path, settings=ONLY_ROBUST, jobs=1)
-    assert (first.sweep, second.sweep, type(views)) == ("gap", "spurious", PartialTable)
+    assert (first.sweep, second.sweep, views.file) == ("gap", "spurious", "partial.csv")
     assert len(first.notes) == 1 < len(second.notes)
     lines = (tmp_path / "accuracy.csv").read_text(encoding="utf-8").splitlines()
     assert [line.split(",")[0] for line in lines] == ["sweep"] + 4 * ["gap"] + 8 * ["spurious"]
@@ -453,7 +452,7 @@ def test_shares_over_views_by_hand():
     assert (line.right.value, line.strict.value, line.covered.value) == (3 / 4, 3 / 5, 3 / 4)
     nothing = partial_line(0.0, 2, [])
     assert (nothing.n_shapes, nothing.kind, nothing.right, nothing.covered) == (0, None, None, None)
-    assert "0 mm  0  -" in str(PartialTable((nothing,)))
+    assert "0 mm  0  -" in str(partial_table([nothing]))
 
 
 def test_partial_views_are_the_same_every_time():

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from ..formats.files import write_atomically
+from ..plots.class_marks import plot_class
 from ..plots.story import save_figure
-from ..plots.teaching import class_figure
 from ..table import Table, as_csv
 from .course import Course
 from .grade import Journal
@@ -42,7 +42,7 @@ def report(course: Course, name: str) -> Iterator[str]:
     for file, (header, rows) in tables.items():
         write_atomically(folder / file, _csv(header, rows))
     parts = seen.parts()
-    figure = class_figure(
+    figure = plot_class(
         name,
         seen.graded,
         [(line.task, line.part, line.right, (_usual(line) or [("", 0)])[0]) for line in parts if not line.open],

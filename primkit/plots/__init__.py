@@ -15,28 +15,14 @@ Every plot takes ``ax``, the axes to draw on, and returns it. Without one it mak
 a notebook shows that by itself, a script calls ``matplotlib.pyplot.show()``. No plot changes matplotlib's settings.
 For several pictures in one figure, ``plt.subplots(1, 2, layout="constrained")`` keeps titles and labels apart.
 
-The rooms, each of which imports only those before it:
-
-===============  ==================================================
-``look.py``      colours and signs, the board, titles, legends
-``labels.py``    where each label finds room
-``pictures.py``  the board, a scan, the points, the clusters
-``found.py``     the shapes that were found, over the truth
-``story.py``     all of them in one figure, and the file it goes to
-``driving.py``   how the map grows on a drive
-``movement.py``  the way of an exploration; what became of a shape that was moved
-``accuracy.py``  a study's accuracy against noise, shapes, scans and strays
-===============  ==================================================
-
 Sources: the pictures are the paper's Figures 1 to 3; the colours are Okabe and Ito's (2008), "Color Universal Design",
 which colour-blind readers can tell apart.
 """
 
 from .accuracy import PANELS, plot_accuracy
-from .driving import plot_drive
+from .driving import plot_change, plot_drive, plot_tour
 from .found import plot_found
 from .look import KIND_COLORS, KIND_MARKERS
-from .movement import plot_change, plot_tour
 from .pictures import plot_clusters, plot_points, plot_scan, plot_world
 from .story import plot_story, save_figure
 

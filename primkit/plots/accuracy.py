@@ -18,9 +18,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..arguments import check_type
 from ..study.accuracy.accuracy_table import COARSE, FINE, TRUTHS, AccuracyLine, AccuracyTable
 from ..study.estimate import Estimate
-from .look import BLACK, BLUE, FIGURE_LETTERS, GREEN, GREY, INK, ORANGE, PALE, PURPLE, VERMILION, check_type
+from .look import BLACK, BLUE, FIGURE_LETTERS, GREEN, GREY, INK, ORANGE, PALE, PURPLE, VERMILION
 from .story import Picture, freeze, plain
 
 PANELS = ("noise", "shapes", "scans", "spurious")  # a sweep of two levels needs no picture
@@ -64,7 +65,7 @@ def plot_accuracy(tables: Iterable[AccuracyTable]) -> Figure:
     """
     tables = list(tables)
     for table in tables:
-        check_type("each of the tables", table, AccuracyTable)
+        check_type(table, AccuracyTable, "each of the tables must be of type AccuracyTable")
     drawn = sorted((t for t in tables if t.sweep in PANELS), key=lambda t: PANELS.index(t.sweep))
     if not drawn:
         got = ", ".join(t.sweep for t in tables) or "none"

@@ -1,7 +1,7 @@
-"""Driving: how the map grows while the robot drives, as a strip of frames.
+"""Driving: how the map grows on a drive, where an exploration led, and what became of a shape that was moved.
 
-In:  a ``World`` and a ``Drive`` through it, just driven or read back from its journal.
-Out: a matplotlib ``Figure``: the same board several times, with what was seen by then.
+In:  a ``World`` with a ``Drive`` or an ``Exploration`` of it; or a world before and after, with the points of a grid.
+Out: ``plot_drive`` a matplotlib ``Figure``, a strip of frames; the others the axes.
 
 >>> from primkit.lidar import scan
 >>> from primkit.shapes import Circle
@@ -19,29 +19,40 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Circle as CirclePatch
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from ..arguments import Floats, Ints, as_count
+from ..arguments import Floats, Ints, as_count, as_points, check_type
+from ..driving import Exploration
 from ..formats import Drive
 from ..grid import Grid
-from ..robot import BODY
 from ..world import World
-from .look import BLUE, GREY, INK, PALE, VERMILION, check_type, count, draw_board, marks, patch, set_title
+from .look import (
+    BLUE,
+    GREY,
+    INK,
+    ORANGE,
+    PALE,
+    ROBOT_SIGN,
+    VERMILION,
+    as_axes,
+    count,
+    draw_areas,
+    draw_board,
+    draw_legend,
+    draw_robot,
+    marks,
+    patch,
+    set_title,
+)
 from .story import Picture, freeze, plain
 
 FRAMES_IN_A_ROW = 3
 FRAME_SIDE = 2.5  # inches
 STRIP_HEAD = 0.8  # inches: title and legend
-SEEN_BEFORE: dict[str, Any] = {
-    "marker": "o",
-    "color": INK,
-    "markersize": 2.2,
-    "markeredgewidth": 0,
-    "linestyle": "none",
-}
-SEEN_NEW: dict[str, Any] = SEEN_BEFORE | {"color": VERMILION, "markersize": 3.4}
+DOTS: dict[str, Any] = {"marker": "o", "markeredgewidth": 0, "linestyle": "none"}
+SEEN_BEFORE, SEEN_NEW = DOTS | {"color": INK, "markersize": 2.2}, DOTS | {"color": VERMILION, "markersize": 3.4}
 WAY_LOOK: dict[str, Any] = {"color": BLUE, "linewidth": 1.0}
+GHOST_GAP = 0.004  # m: a point farther than this from every outline belongs to nothing that is there
 
 
 def plot_drive(world: World, drive: Drive, n_frames: int = 6) -> Figure:
@@ -71,8 +82,8 @@ def plot_drive(world: World, drive: Drive, n_frames: int = 6) -> Figure:
     -----
     Points are the grid's: cells of 1 mm that were hit, each counted when it was hit first.
     """
-    check_type("world", world, World)
-    check_type("drive", drive, Drive)
+    check_type(world, World, "world must be of type World")
+    check_type(drive, Drive, "drive must be of type Drive")
     n_frames = min(as_count(n_frames, "n_frames"), len(drive))
     if n_frames == 0:
         raise ValueError("a drive must have scans to be drawn, got none")
@@ -97,6 +108,68 @@ def plot_drive(world: World, drive: Drive, n_frames: int = 6) -> Figure:
     return figure
 
 
+def plot_tour(world: World, tour: Exploration, ax: Axes | None = None) -> Axes:
+    """Draw where the robot drove, where it scanned, and what it saw.
+
+    Parameters
+    ----------
+    world : World
+        The truth.
+    tour : Exploration
+        What ``explore`` returned.
+    ax : Axes, optional
+        Where to draw.
+    """
+    check_type(world, World, "world must be of type World")
+    check_type(tour, Exploration, "tour must be of type Exploration")
+    ax = as_axes(ax)
+    points = tour.scans.points()
+    draw_board(ax, world.size, points, legend=True)
+    draw_areas(ax, world.shapes)
+    ax.plot(*points.T, "o", color=INK, markersize=marks(ax, 2), markeredgewidth=0, zorder=3)
+    (way,) = ax.plot(*tour.path[:, :2].T, color=GREY, linewidth=marks(ax, 1.2), label="way", zorder=2)
+    look: dict[str, Any] = {"linestyle": "none", "markeredgecolor": INK, "markersize": marks(ax, 6)}
+    (stops,) = ax.plot(*tour.poses[:, :2].T, label="scan", marker="o", color=ORANGE, zorder=4, **look)
+    (start,) = ax.plot(*tour.path[:1, :2].T, label="start", marker="D", color="white", zorder=5, **look)
+    draw_legend(ax, [way, stops, start])
+    set_title(ax, f"{tour.n_scans} scans in {tour.robot_time:.0f} s: {tour.why}")
+    return ax
+
+
+def plot_change(before: World, after: World, points: ArrayLike, ax: Axes | None = None) -> Axes:
+    """Draw the points of a grid over a world in which something was moved; ghosts stand out.
+
+    Parameters
+    ----------
+    before, after : World
+        The truth as it was (dashed) and as it is (filled).
+    points : array_like, shape (N, 2)
+        The grid's points, metres; those more than 4 mm from every outline that is there now are ghosts.
+    ax : Axes, optional
+        Where to draw.
+    """
+    check_type(before, World, "before must be of type World")
+    check_type(after, World, "after must be of type World")
+    points, ax = as_points(points), as_axes(ax)
+    off = np.full(len(points), np.inf)
+    for shape in after.shapes:
+        off = np.minimum(off, np.abs(shape.signed_distance(points)))
+    ghost = off > GHOST_GAP
+    draw_board(ax, after.size, points, legend=True)
+    draw_areas(ax, after.shapes)
+    dashed: dict[str, Any] = {"fill": False, "edgecolor": GREY, "linestyle": "--", "linewidth": marks(ax, 1.2)}
+    for shape in before.shapes:
+        if shape not in after.shapes:
+            ax.add_patch(patch(shape, **dashed))
+    ax.plot(*points[~ghost].T, "o", color=INK, markersize=marks(ax, 2.4), markeredgewidth=0, zorder=3)
+    ax.plot(*points[ghost].T, "x", color=ORANGE, markersize=marks(ax, 4), zorder=4)
+    was = Line2D([], [], color=GREY, linestyle="--", label="where it was")
+    here = Line2D([], [], color=INK, marker="o", markersize=3, linestyle="none", label="point")
+    draw_legend(ax, [was, here, Line2D([], [], color=ORANGE, marker="x", linestyle="none", label="ghost")])
+    set_title(ax, f"{ghost.sum()} of {len(points)} points are ghosts")
+    return ax
+
+
 def _first_seen(drive: Drive) -> tuple[Floats, Ints]:
     """Return the grid's points, shape (N, 2), and the number of the scan that hit each first, shape (N,)."""
     grid, scans = Grid(), drive.scans
@@ -112,10 +185,7 @@ def _draw_frame(ax: Axes, world: World, poses: Floats, points: Floats, new: NDAr
     ax.plot(*poses[:, :2].T, zorder=2, **(WAY_LOOK | {"linewidth": marks(ax, 1.2)}))
     for look, those in ((SEEN_BEFORE, ~new), (SEEN_NEW, new)):
         ax.plot(*points[those].T, zorder=3, **(look | {"markersize": marks(ax, look["markersize"])}))
-    x, y, heading = poses[-1].tolist()
-    ax.add_patch(CirclePatch((x, y), BODY, facecolor="white", edgecolor=INK, linewidth=1, zorder=4))
-    nose = BODY * np.array([np.cos(heading), np.sin(heading)])
-    ax.plot([x, x + nose[0]], [y, y + nose[1]], color=INK, linewidth=1.5, solid_capstyle="butt", zorder=5)
+    draw_robot(ax, poses[-1])
 
 
 def _keep_outer_labels(ax: Axes, *, left: bool, below: bool) -> None:
@@ -129,10 +199,9 @@ def _keep_outer_labels(ax: Axes, *, left: bool, below: bool) -> None:
 
 
 def _legend() -> list[Line2D]:
-    robot: dict[str, Any] = {"marker": "o", "markerfacecolor": "white", "markeredgecolor": INK, "markersize": 7}
     return [
         Line2D([], [], label="seen before", **(SEEN_BEFORE | {"markersize": 4})),
         Line2D([], [], label="new in this frame", **(SEEN_NEW | {"markersize": 5})),
         Line2D([], [], label="way so far", **WAY_LOOK),
-        Line2D([], [], label="robot", linestyle="none", color=GREY, **robot),
+        Line2D([], [], label="robot", linestyle="none", **ROBOT_SIGN),
     ]

@@ -19,7 +19,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ..arguments import Floats
+from ..arguments import Floats, check_type
 from ..evaluation import Match, Report
 from ..measure import Detection
 from ..seen import is_seen
@@ -31,7 +31,6 @@ from .look import (
     INK,
     KIND_COLORS,
     as_axes,
-    check_type,
     count,
     draw_areas,
     draw_board,
@@ -77,8 +76,10 @@ def plot_found(
     """
     found = list(found)
     shapes = [_shape_of(item) for item in found]
-    check_type("world", world, World, or_none=True)
-    check_type("report", report, Report, or_none=True)
+    if world is not None:
+        check_type(world, World, "world must be of type World")
+    if report is not None:
+        check_type(report, Report, "report must be of type Report")
     notes, truth = _notes(shapes, report), _truth(world, report)
     ax, size = as_axes(ax), 1.0 if world is None else world.size
     room = draw_board(ax, size, outlines(truth or shapes), legend=True)  # a found shape may be absurdly large

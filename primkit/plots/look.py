@@ -25,7 +25,8 @@ from matplotlib.patches import Patch, Rectangle
 from matplotlib.patches import Polygon as PolygonPatch
 from matplotlib.ticker import MaxNLocator
 
-from ..arguments import Floats
+from ..arguments import Floats, check_type
+from ..robot import BODY
 from ..shapes import Circle, Kind, Shape
 
 # Okabe and Ito's colours; their yellow is too faint on white. The first four have a contrast of 3 and more to white.
@@ -60,25 +61,15 @@ FIGURE_LETTERS = 9.0  # points: in figures of a fixed size
 LEAST_COLUMNS = 10  # letters: a title is not broken into shorter lines
 LEGEND_WIDTH = 2.6  # inches: narrower axes have no room for a legend
 
+ROBOT_SIGN: dict[str, Any] = {"marker": "o", "markerfacecolor": "white", "markeredgecolor": INK, "markersize": 7}
+
 FIGURE_SIZE = (5.2, 5.2)  # inches: small, so that letters can still be read at 390 pixels, a phone's width
-
-
-def check_type(name: str, value: object, kind: type, *, or_none: bool = False) -> None:
-    """Refuse a value of another type.
-
-    >>> check_type("ax", [], Axes)
-    Traceback (most recent call last):
-        ...
-    ValueError: ax must be of type Axes, got list
-    """
-    if not isinstance(value, kind) and not (or_none and value is None):
-        raise ValueError(f"{name} must be of type {kind.__name__}, got {type(value).__name__}")
 
 
 def as_axes(ax: Axes | None) -> Axes:
     """Return the axes, or those of a new pyplot figure."""
-    check_type("ax", ax, Axes, or_none=True)
     if ax is not None:
+        check_type(ax, Axes, "ax must be of type Axes")
         return ax
     import matplotlib.pyplot as plt  # not at the top: pyplot keeps a list of figures, and only this needs it
 
@@ -184,6 +175,14 @@ def draw_areas(ax: Axes, shapes: Iterable[Shape], **look: Any) -> None:
         color = KIND_COLORS[shape.kind]
         usual = {"facecolor": to_rgba(color, 0.2), "edgecolor": color, "linewidth": 0, "zorder": 1}
         ax.add_patch(patch(shape, **(usual | look)))
+
+
+def draw_robot(ax: Axes, pose: Floats, width: float = 1.0) -> None:
+    """Draw the robot's body, with a line from its middle to where it heads; ``width`` in points."""
+    x, y, heading = pose.tolist()
+    ax.add_patch(CirclePatch((x, y), BODY, facecolor="white", edgecolor=INK, linewidth=width, zorder=2.8))
+    nose = BODY * np.array([np.cos(heading), np.sin(heading)])
+    ax.plot([x, x + nose[0]], [y, y + nose[1]], color=INK, linewidth=1.6 * width, solid_capstyle="butt", zorder=5)
 
 
 def draw_center(ax: Axes, shape: Shape) -> None:

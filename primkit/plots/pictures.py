@@ -9,7 +9,6 @@ Out: these axes, with a title that states what there is to see.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -21,7 +20,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle as CirclePatch
 from numpy.typing import ArrayLike, NDArray
 
-from ..arguments import Floats, as_count, as_points, as_positive
+from ..arguments import Floats, as_count, as_points, as_positive, check_type
 from ..lidar import Lidar, Scans
 from ..raycast import cast_rays
 from ..shapes import KINDS, Circle, Shape
@@ -34,13 +33,14 @@ from .look import (
     INK,
     ORANGE,
     PALE,
+    ROBOT_SIGN,
     as_axes,
-    check_type,
     count,
     draw_areas,
     draw_board,
     draw_center,
     draw_legend,
+    draw_robot,
     letters,
     marks,
     outlines,
@@ -48,7 +48,6 @@ from .look import (
     width_of,
 )
 
-ROBOT_RADIUS = 0.037  # m: the e-puck's body
 SIGNS_PER_CLUSTER = 6  # larger markers on each cluster, so that it can be told from the others without colour
 
 
@@ -67,7 +66,7 @@ def plot_world(world: World, ax: Axes | None = None) -> Axes:
     >>> plot_world(World()).get_title(loc="left")
     'No shapes'
     """
-    check_type("world", world, World)
+    check_type(world, World, "world must be of type World")
     ax = as_axes(ax)
     room = draw_board(ax, world.size, outlines(world.shapes))
     draw_areas(ax, world.shapes, linewidth=1.5)
@@ -117,15 +116,15 @@ def plot_scan(
     >>> plot_scan(world, scan(world, [(0, 0, 0)])).get_title(loc="left")
     'Scan 0: 9 of 100 beams hit'
     """
-    check_type("world", world, World)
-    check_type("scans", scans, Scans)
-    check_type("lidar", lidar, Lidar, or_none=True)
+    lidar = Lidar() if lidar is None else lidar
+    for name, value, kind in (("world", world, World), ("scans", scans, Scans), ("lidar", lidar, Lidar)):
+        check_type(value, kind, f"{name} must be of type {kind.__name__}")
     if as_count(index, "index", least=0) >= len(scans):
         raise ValueError(f"index must be below the number of scans, got {index} for {len(scans)}")
-    ax, lidar, seen = as_axes(ax), lidar or Lidar(), scans[index : index + 1]
+    ax, seen = as_axes(ax), scans[index : index + 1]
     draw_board(ax, world.size, Circle(seen.poses[0, :2], lidar.range_max).outline(4), legend=True)
     draw_areas(ax, world.shapes, linewidth=1.5)
-    draw_legend(ax, [*_draw_beams(ax, world, seen, lidar), *_draw_robot(ax, seen.poses[0], lidar)])
+    draw_legend(ax, [*_draw_beams(ax, world, seen, lidar), *_draw_range(ax, seen.poses[0], lidar)])
     hits = f"{seen.hits.sum()} of {seen.hits.size} beams hit"
     set_title(ax, f"Scan {index}: {'inside a shape, it sees nothing' if seen.inside[0] else hits}")
     return ax
@@ -146,19 +145,14 @@ def _draw_beams(ax: Axes, world: World, seen: Scans, lidar: Lidar) -> list[Artis
     return [dot, Line2D([], [], color=PALE, label="no hit")]
 
 
-def _draw_robot(ax: Axes, pose: Floats, lidar: Lidar) -> list[Artist]:
-    """Draw the robot with its heading, and the ring in which it can see; return what the legend shows."""
-    x, y, heading = pose.tolist()
+def _draw_range(ax: Axes, pose: Floats, lidar: Lidar) -> list[Artist]:
+    """Draw the robot, and the ring in which it can see; return what the legend shows."""
     rim: dict[str, Any] = {"color": GREY, "linestyle": "--", "linewidth": 0.9}
     for radius in (lidar.range_min, lidar.range_max):
-        ax.add_patch(CirclePatch((x, y), radius, fill=False, zorder=2.5, **rim))
-    shell = {"facecolor": "white", "edgecolor": INK, "linewidth": marks(ax, 1.2), "zorder": 2.8}
-    ax.add_patch(CirclePatch((x, y), ROBOT_RADIUS, **shell))
-    nose = ROBOT_RADIUS * np.array([math.cos(heading), math.sin(heading)])
-    ax.plot([x, x + nose[0]], [y, y + nose[1]], color=INK, linewidth=marks(ax, 2), solid_capstyle="butt", zorder=5)
-    body: dict[str, Any] = {"marker": "o", "markerfacecolor": "white", "markeredgecolor": INK, "markersize": 7}
+        ax.add_patch(CirclePatch((pose[0], pose[1]), radius, fill=False, zorder=2.5, **rim))
+    draw_robot(ax, pose, marks(ax, 1.2))
     ring = f"range {lidar.range_min:g} to {lidar.range_max:g} m"
-    return [Line2D([], [], label=ring, **rim), Line2D([], [], linestyle="none", label="robot", **body)]
+    return [Line2D([], [], label=ring, **rim), Line2D([], [], label="robot", linestyle="none", **ROBOT_SIGN)]
 
 
 # --- points and clusters ------------------------------------------------------------------------------------

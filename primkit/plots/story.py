@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from ..arguments import as_points
+from ..arguments import as_points, check_type
 from ..evaluation import Report
 from ..formats import StrPath, write_atomically
 from ..lidar import Scans
@@ -24,7 +24,7 @@ from ..measure import Detection
 from ..shapes import Shape
 from ..world import World
 from .found import plot_found
-from .look import check_type, count, set_title
+from .look import count, set_title
 from .pictures import plot_clusters, plot_points, plot_scan, plot_world
 
 PICTURE_DPI = 200
@@ -89,8 +89,8 @@ def plot_story(
     ['a) No scans', 'b) No points', 'c) No clusters', 'd) No shapes found']
     """
     points = as_points(points)
-    check_type("scans", scans, Scans)
-    check_type("report", report, Report)
+    check_type(scans, Scans, "scans must be of type Scans")
+    check_type(report, Report, "report must be of type Report")
     with plain():
         figure = Picture(figsize=(6.4, 5.0), layout="constrained")
         axes = figure.subplot_mosaic("ad;bd;cd", width_ratios=[1, 2.8])

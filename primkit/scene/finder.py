@@ -1,4 +1,4 @@
-"""Finder: looks for shapes beside the drive, so that the robot never waits for them.
+"""Finder: look for shapes beside the drive, so that the robot never waits for them.
 
 In:  the points of the grid, again and again, while the map grows.
 Out: ``Look``: the shapes of the last look that is done, and how many scans it knew.
@@ -10,10 +10,9 @@ Out: ``Look``: the shapes of the last look that is done, and how many scans it k
 >>> [one.kind for one in look.found], look.n_scans, finder.news()
 (['circle'], 7, None)
 
-There is one look at a time, and who asks for another while it lasts is not heard: the next look takes the points that
-are newest then. ``beside()`` looks in a thread of its own; ``AtOnce()`` in the caller's, so that the same drive gives
-the same shapes on any computer. Of very many cells only a part is looked at (``thinned``), so that neither the time nor
-the memory of a look grows with the drive.
+There is one look at a time; another that is asked for meanwhile is not begun, and the next takes the points that are
+newest then. ``beside()`` looks in a thread of its own; ``AtOnce()`` in the caller's, so that the same drive gives the
+same shapes on any computer. ``thinned`` bounds the cells of a look, and so its time and memory.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Any, ParamSpec, TypeVar
+from typing import ParamSpec, TypeVar
 
 import numpy as np
 
@@ -55,27 +54,19 @@ def beside() -> Executor:
     return ThreadPoolExecutor(max_workers=1, thread_name_prefix="primkit-finder")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Look:
-    """The shapes in what was seen by a scan.
-
-    Parameters
-    ----------
-    found : list of Detection
-        From left to right.
-    n_scans : int
-        How many scans the points were made of.
-    """
+    """The shapes that were found, from left to right, and how many scans the points were made of."""
 
     found: list[Detection]
     n_scans: int
 
 
 def thinned(cells: Ints, most: int = MOST_CELLS) -> Bools:
-    """Tell which cells are looked at when there are too many: a share of them, as if by chance, shape (N,).
+    """Tell which cells are looked at when there are too many: a share of them, by a hash of each, shape (N,).
 
-    A cell is chosen or not whatever else there is: as long as the share stays the same, a map that grows stays a map
-    that grows, and the last look can be built upon.
+    A cell is chosen whatever else there is: while the share stays the same, the chosen cells of a map that grows only
+    grow, and the last look is a warm start for the next.
 
     Examples
     --------
@@ -109,7 +100,7 @@ class Finder:
         self.forget()
 
     def forget(self) -> None:
-        """Begin anew with other points; a look that is still under way is not waited for, and comes to nothing."""
+        """Begin anew with other points; a look that is still under way is dropped."""
         self._memory: Memory = {}
         self._under_way: Future[Look] | None = None
 
@@ -129,12 +120,7 @@ class Finder:
             self._under_way = self._executor.submit(work)
 
     def news(self, *, wait: bool = False) -> Look | None:
-        """Return the look that was begun, once it is done, and once only; None while there is nothing new.
-
-        Parameters
-        ----------
-        wait : bool
-            Wait for it until it is done.
+        """Return the look that was begun, once it is done (``wait`` for that), and once only; None without news.
 
         Raises
         ------
@@ -152,11 +138,11 @@ class Finder:
             raise
 
     def close(self) -> None:
-        """Let the executor go, and wait for nothing; who still looks then does so at once."""
+        """Let the executor go, without waiting; looks that are asked for later are done at once."""
         self._executor.shutdown(wait=False, cancel_futures=True)
         self._executor = AtOnce()
         self.forget()
 
-    def submit(self, work: Callable[[], T]) -> Future[Any]:
-        """Have other work done beside the drive, when no look is under way."""
+    def submit(self, work: Callable[[], T]) -> Future[T]:
+        """Have other work done beside the drive, between two looks."""
         return self._executor.submit(work)

@@ -1,4 +1,4 @@
-"""Moving: somebody takes a shape while the robot drives, and puts it down somewhere else.
+"""Moved shape: somebody puts a shape down somewhere else while the robot drives.
 
 In:  a ``World``, and where the robot is.
 Out: another ``World``, in which one shape stands elsewhere; or None where there is no room for that.
@@ -21,17 +21,17 @@ from ..arguments import Bools, Floats
 from ..driving.moving_grid import MovingGrid
 from ..measure import Detection
 from ..robot import CLEAR, clearance
+from ..seen import share_seen
 from ..shapes import Shape
 from ..world import World, gap_between
-from .page import share_seen
 
 LEAST_MOVED, MOST_MOVED = 0.08, 0.2  # m: how far a shape is moved
 MOST_TURNED = 0.5  # rad: by how much it is turned at most, either way
 SHAPE_GAP = 0.08  # m between shapes: the body is 7.4 cm wide
 EDGE_GAP = 0.1  # m from the edge of the board: the sensor sees round a shape only from the board
 MOVE_TRIES = 500
-WITHIN_DEPTH = 0.012  # m: who lies so deep within a shape is not of its outline
-MOSTLY_SEEN = 0.6  # of an outline: who has seen so much of it may say what lies within
+WITHIN_DEPTH = 0.012  # m: a cell so deep within a shape is not of its outline
+MOSTLY_SEEN = 0.6  # of an outline: from this share on, it tells what lies within
 
 
 def with_one_moved(world: World, pose: Floats, rng: np.random.Generator) -> World | None:
@@ -68,20 +68,15 @@ def _has_room(shape: Shape, rest: list[Shape], size: float, pose: Floats) -> boo
 
 
 def left_within(grid: MovingGrid, found: Iterable[Detection]) -> Bools:
-    """Tell which cells lie within a shape that stands there since, shape (N,): no beam will ever contradict them.
+    """Tell which cells of a map lie within a shape found later, shape (N,): no beam will ever contradict them.
 
-    Parameters
-    ----------
-    grid : MovingGrid
-        The map.
-    found : iterable of Detection
-        The shapes in it; those of whose outline little was seen have no say.
+    Only shapes of which ``MOSTLY_SEEN`` was seen count.
     """
     points, last = grid.points(), grid.last_seen
     left = np.zeros(len(points), dtype=bool)
     for one in found:
         apart = one.shape.signed_distance(points)
         own = np.abs(apart) <= WITHIN_DEPTH
-        if own.any() and share_seen(one) >= MOSTLY_SEEN:
+        if own.any() and share_seen(one.shape, one.points) >= MOSTLY_SEEN:
             left |= (apart < -WITHIN_DEPTH) & (last < np.median(last[own]))
     return left

@@ -1,4 +1,4 @@
-"""Sketch: what the page needs to know to draw a board with a robot; ``board.js`` draws it.
+"""Page: what the page needs to know to draw a board with a robot; ``board.js`` draws it.
 
 In:  a ``Detection``, a board's size, a sensor.
 Out: messages: dictionaries of numbers and words, lengths in tenths of a millimetre.
@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import Floats
+from ..arguments import Floats, Ints
 from ..driving.seen_map import OUTLINE_STEP
 from ..lidar import Lidar
 from ..measure import Detection
@@ -40,10 +40,9 @@ def board_and_look(size: float, lidar: Lidar, cell: float) -> Message:
     return {"board": board, "look": {"colors": PAGE_COLORS, "kinds": KIND_COLORS, "inks": KIND_INKS}}
 
 
-def told_ranges(ranges: Floats) -> list[int]:
-    """Return ranges in tenths of a millimetre, and -1 where nothing was hit."""
-    told: list[int] = np.where(np.isfinite(ranges), np.rint(ranges / TENTH), -1).astype(int).tolist()
-    return told
+def told_ranges(ranges: Floats) -> Ints:
+    """Return ranges in tenths of a millimetre, and -1 where nothing was hit, in the same shape."""
+    return np.where(np.isfinite(ranges), np.rint(ranges / TENTH), -1).astype(np.int64)
 
 
 def drawn(one: Detection) -> Message:
@@ -82,11 +81,6 @@ def ring_of(shape: Shape) -> Floats:
             ]
         )
     return np.vstack([ring, ring[:1]])
-
-
-def share_seen(one: Detection) -> float:
-    """Return how much of a shape's outline has points of its own near it, 0 to 1."""
-    return float(is_seen(ring_of(one.shape), one.points).mean())
 
 
 def _name(one: Detection) -> str:

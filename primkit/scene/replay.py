@@ -17,8 +17,6 @@ fifth, and once more in the end.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import anywidget
 import numpy as np
 from numpy.typing import NDArray
@@ -27,13 +25,12 @@ from ..arguments import Ints, check_type
 from ..evaluation import evaluate
 from ..formats import Drive
 from ..grid import Grid
-from ..measure import Detection
 from ..pipeline import Memory, find_shapes
 from ..world import World
-from .page import TENTH, Message, board_and_look, drawn, page, ring_of, tenths
+from .finder import Look
+from .page import Message, board_and_look, drawn, page, ring_of, tenths, told_ranges
 
 GROWTH = 1.2  # so many times the cells are worth another look
-NO_HIT = -1
 MOST_RANGE = 32_767  # tenths of a millimetre: ranges go to the page as whole numbers of 16 bits
 
 
@@ -75,24 +72,8 @@ def replay(drive: Drive, world: World | None = None, *, rng: int = 0) -> Replay:
     return Replay(drive, world, Film(drive, rng))
 
 
-@dataclass(frozen=True, eq=False)
-class Shown:
-    """The shapes from a scan on: its number, from 0, and what is found then."""
-
-    scan: int
-    found: list[Detection]
-
-
 class Film:
-    """What is new with each scan of a drive.
-
-    Parameters
-    ----------
-    drive : Drive
-        What was driven and seen.
-    rng : int
-        Seed for the search.
-    """
+    """What is new with each scan of a ``Drive``; ``rng`` is the seed for the search."""
 
     def __init__(self, drive: Drive, rng: int = 0) -> None:
         grid, scans = Grid(), drive.scans
@@ -103,14 +84,14 @@ class Film:
         self.known: Ints = np.searchsorted(scan_of[order], np.arange(len(drive)), side="right")  # after each scan
         self.looks = self._looked_at(grid, rng)
 
-    def _looked_at(self, grid: Grid, rng: int) -> list[Shown]:
+    def _looked_at(self, grid: Grid, rng: int) -> list[Look]:
         """Return the shapes on the way, whenever the map has grown enough, and in the end."""
         memory: Memory = {}
         looks, n_looked_at, last = [], 0, len(self.known) - 1
         for number, n in enumerate(self.known.tolist()):
             if n > n_looked_at and (n >= GROWTH * n_looked_at or number == last):
                 points = grid.to_points(self.cells[:n])
-                looks.append(Shown(number, find_shapes(points, memory=memory, rng=rng)))
+                looks.append(Look(find_shapes(points, memory=memory, rng=rng), number + 1))
                 n_looked_at = n
         return looks
 
@@ -141,7 +122,7 @@ class Replay(anywidget.AnyWidget):
         drive, truth = self.drive, () if self.world is None else self.world.shapes
         size = 1.0 if self.world is None else self.world.size
         looks = [
-            {"scan": look.scan, "shapes": [drawn(one) for one in look.found], "score": self._score(look)}
+            {"scan": look.n_scans - 1, "shapes": [drawn(one) for one in look.found], "score": self._score(look)}
             for look in self.film.looks
         ]
         return board_and_look(size, drive.lidar, Grid().resolution) | {
@@ -153,7 +134,7 @@ class Replay(anywidget.AnyWidget):
             "truths": [tenths(ring_of(shape)) for shape in truth],
         }
 
-    def _score(self, look: Shown) -> str:
+    def _score(self, look: Look) -> str:
         found = f"{len(look.found)} found"
         if self.world is None:
             return found
@@ -161,6 +142,4 @@ class Replay(anywidget.AnyWidget):
 
     def _ranges(self) -> NDArray[np.int16]:
         """Return ranges in tenths of a millimetre, shape (P, B), -1 where nothing was hit."""
-        ranges = self.drive.scans.ranges
-        told = np.where(np.isfinite(ranges), np.rint(ranges / TENTH), NO_HIT)
-        return np.minimum(told, MOST_RANGE).astype("<i2")
+        return np.minimum(told_ranges(self.drive.scans.ranges), MOST_RANGE).astype("<i2")

@@ -4,8 +4,7 @@ In:  a ``World`` and a ``Lidar``.
 Out: ``Run``, one for each way to move; together a ``Comparison``, which prints as a table.
 
 >>> from primkit.shapes import Circle
->>> world = World([Circle((0.2, 0.1), 0.06)])
->>> Comparison((from_waypoints(world, Lidar(), 0), by_exploring(world, Lidar(), 0)))
+>>> Comparison(automatic_runs(World([Circle((0.2, 0.1), 0.06)]), Lidar(), rng=0))
             scans  robot time  found  score
 ----------  -----  ----------  -----  -----  ---------------------------------------------------------------
 way-points  76     7.7 s       1      1.00   the robot is set down at each; the ways between are not counted
@@ -29,24 +28,10 @@ from ..world import World
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What came of one way to move.
+    """What came of one way to move: ``"by hand"``, ``"way-points"`` or ``"explore"``.
 
-    Parameters
-    ----------
-    name : str
-        ``"by hand"``, ``"way-points"`` or ``"explore"``.
-    n_scans : int
-        How many scans were taken.
-    robot_time : float
-        Seconds that the robot took, computing left out.
-    n_found : int
-        How many shapes were found.
-    score : float
-        Their weighted accuracy, 0 to 1.
-    note : str
-        What the time is made of.
-    way : array, shape (N, 2)
-        Where it scanned, metres.
+    Scans, seconds that the robot took (``note`` says what for), shapes found and their weighted accuracy, and the
+    ``way``, shape (N, 2): where it scanned, metres.
     """
 
     name: str
@@ -80,7 +65,12 @@ class Comparison:
         return self.table()._repr_html_()
 
 
-def from_waypoints(world: World, lidar: Lidar, rng: int) -> Run:
+def automatic_runs(world: World, lidar: Lidar, rng: int) -> tuple[Run, Run]:
+    """Return what the two automatic movements find on a board."""
+    return _scan_from_waypoints(world, lidar, rng), _explore(world, lidar, rng)
+
+
+def _scan_from_waypoints(world: World, lidar: Lidar, rng: int) -> Run:
     """Scan from the paper's way-points, all of whose periods count, and find what is there."""
     poses = teleport_poses(world)
     grid = Grid()
@@ -91,7 +81,7 @@ def from_waypoints(world: World, lidar: Lidar, rng: int) -> Run:
     return Run("way-points", len(poses), time, len(found), score, note, poses[:, :2])
 
 
-def by_exploring(world: World, lidar: Lidar, rng: int) -> Run:
+def _explore(world: World, lidar: Lidar, rng: int) -> Run:
     """Let the robot find its own way, and find what is there."""
     tour = explore(world, lidar, rng=rng)
     score, places = evaluate(list(tour.found), world).weighted_accuracy, tour.poses[:, :2]

@@ -10,11 +10,9 @@ Scene: 0.0 s driven, 1 scan, 0 shapes found
 >>> scene.close()
 
 The page (``scene.js``, ``board.js``) has the clock: while a key is held it asks for a step ten times a second, one at a
-time, and the kernel answers each with what is new. So nothing runs on when nobody drives, and a slow computer drives
-slowly instead of lagging behind. Shapes are looked for beside that, in a thread: with much noise a look takes longer
-than a step, and then the outlines are some scans old, which the page says. When all keys are let go, it asks on until
-the last look is done. Nothing is drawn that the robot has not measured, unless the truth is switched on; the score
-knows the truth, too.
+time, and the kernel answers each with what is new; a slow computer drives slowly instead of lagging behind. Shapes are
+looked for beside that, in a thread; outlines that are some scans old are said to be. Only what the robot has measured
+is drawn, unless the truth is switched on; the score knows the truth.
 """
 
 from __future__ import annotations
@@ -31,8 +29,8 @@ from ..world import World
 from .finder import beside
 from .keys import wheels_for
 from .page import Message, board_and_look, drawn, page, ring_of, tenths, told_ranges
-from .runs import Comparison
-from .state import DriveState, automatic_runs
+from .runs import Comparison, Run, automatic_runs
+from .state import DriveState
 
 FRESH_SCANS = 5  # scans: outlines that know all scans but so many are as good as new
 
@@ -104,7 +102,7 @@ class Scene(anywidget.AnyWidget):
         self.paused = self.shows_unseen = self.shows_truth = False
         self._shown: list[Message] = []  # the shapes as the page has them
         self._shown_of = 0  # how many scans they were found in
-        self._automatic: Future[Comparison] | None = None  # under way, or done
+        self._automatic: Future[tuple[Run, Run]] | None = None  # under way, or done
         self._compared: Message | None = None
         self.on_msg(lambda _, asked, __: self.answer(asked))
 
@@ -197,7 +195,7 @@ class Scene(anywidget.AnyWidget):
         """Return what every step changes: pose, ranges, time, score."""
         state = self.state
         record = state.trouble or (f"recording {state.record.name}" if state.record else "")
-        pose, ranges = [round(float(value), 5) for value in state.pose], told_ranges(state.scan.ranges[0])
+        pose, ranges = [round(float(value), 5) for value in state.pose], told_ranges(state.scan.ranges[0]).tolist()
         return {"pose": pose, "ranges": ranges, "scans": state.n_scans, "score": self._score(), "record": record}
 
     def _send_all(self, say: str = "") -> None:
@@ -233,7 +231,7 @@ class Scene(anywidget.AnyWidget):
         state = self.state
         if self._automatic is None:
             work = partial(automatic_runs, state.world, state.lidar, state.seed)
-            self._automatic = state.beside(lambda: Comparison(work()))
+            self._automatic = state.finder.submit(work)
             self.send({"say": "The robot drives by itself now: way-points, then explore."})
         self.send(self._news())
 
@@ -242,7 +240,7 @@ class Scene(anywidget.AnyWidget):
         if self._automatic is None or not self._automatic.done():
             return {}
         try:
-            automatic = self._automatic.result().runs
+            automatic = self._automatic.result()
         except Exception as error:
             self._automatic = None
             return {"say": f"The robot cannot drive by itself here: {type(error).__name__}: {error}"}

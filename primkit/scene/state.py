@@ -1,4 +1,4 @@
-"""Driving: the robot under somebody's hand, and what it knows so far; the scene without its picture.
+"""State: the robot under somebody's hand, and what it knows so far; the scene without its picture.
 
 In:  a ``World``, and the speeds of the wheels for each tenth of a second.
 Out: a ``DriveState``: pose, last scan, cells, shapes found so far, score, time.
@@ -13,21 +13,19 @@ Out: a ``DriveState``: pose, last scan, cells, shapes found so far, score, time.
 >>> state.pose.tolist(), state.n_scans
 ([0.0, 0.0, 0.0], 1)
 
-Each step turns the wheels for a period of the sensor, scans once, adds the hits to the grid, and begins to look for
-shapes when a hundredth of the grid is new since the last look; what is left over is looked at when the robot stands or
-sees nothing new. The look is the business of a ``Finder``: in a script it is done before the step is, in the scene it
-goes on beside the drive, and the shapes are those of the last one that is done. What a step takes does not grow with
-the time: scans are not kept, and the grid is as large as the outlines are long. Who wants the scans back writes a
-journal.
+A step turns the wheels for a period of the sensor, scans once, and adds the hits to the grid. A look for shapes begins
+
+    when the cells that are new or gone since the last look  >=  1 % of the grid,
+
+or any at all, once the robot stands or sees nothing new. In a script it is done before the step is (``AtOnce``), in the
+scene beside the drive. A step takes no longer at the end of a drive: scans are not kept; a journal keeps them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from concurrent.futures import Executor, Future
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -45,27 +43,17 @@ from ..world import World
 from .finder import MOST_CELLS, AtOnce, Finder, thinned
 from .keys import STANDING_WHEELS
 from .moved_shape import left_within, with_one_moved
-from .runs import Comparison, Run, by_exploring, from_waypoints
+from .runs import Comparison, Run, automatic_runs
 
 NEWS_SHARE = 0.01  # when this share of the cells has come or gone since the last look, it is time for another
 KEY_STRIDE = 1 << 31  # cells: farther apart than any two on a board
-T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """What one step changed.
+    """What one step changed: cells that are new, (M, 2), and given up, (K, 2), where things may move.
 
-    Parameters
-    ----------
-    new_cells : array of int, shape (M, 2)
-        Cells of the grid that were hit for the first time.
-    gone_cells : array of int, shape (K, 2)
-        Cells that were given up: only where things may move.
-    stopped : bool
-        Whether something was in the robot's way.
-    mapped : bool
-        Whether a look for shapes was done; else they are what they were.
+    ``stopped``: something was in the robot's way. ``mapped``: a look for shapes was done; else they are as before.
     """
 
     new_cells: Ints
@@ -79,18 +67,8 @@ class DriveState:
 
     Parameters
     ----------
-    world : World
-        What stands on the board.
-    lidar : Lidar, optional
-        The sensor; the paper's by default. A step takes its period.
-    journal : str or path, optional
-        A file ending in ``.jsonl`` that each scan is written to as it happens; ``load_drive`` reads it. It is made
-        with the first step. No file is ever replaced: where there is one already, and after ``undo``, the next
-        free of ``drive.jsonl``, ``drive-2.jsonl``, ... is taken.
-    moving : bool
-        Whether things may be moved meanwhile: the map is then a ``MovingGrid``, which gives up what is contradicted.
-    rng : int
-        Seed for the sensor's noise, for the search, and for what is moved where.
+    world, lidar, journal, moving, rng
+        As for ``drive_scene``. The journal is made with the first step, and another one after ``undo``.
     executor : Executor, optional
         Who looks for shapes: ``AtOnce()`` by default, ``beside()`` in a thread of its own.
 
@@ -120,14 +98,14 @@ class DriveState:
             raise ValueError(f"journal must be a file name that ends in .jsonl, got {self.journal.name}")
         self._start_world = world
         self._written: DriveJournal | None = None
-        self._finder = Finder(AtOnce() if executor is None else executor, rng)
+        self.finder = Finder(AtOnce() if executor is None else executor, rng)
         self.undo()
         self.finish()
 
     def undo(self) -> None:
         """Go back to the start and forget all that was seen; what was written to a journal stays."""
         self._end_journal()
-        self._finder.forget()
+        self.finder.forget()
         self.trouble = ""  # why the journal could not be written, in one sentence
         self.world, self.pose, self.n_scans, self.stopped = self._start_world, start_pose(self._start_world), 0, False
         self.grid: Grid | MovingGrid = MovingGrid(lidar=self.lidar) if self.moving else Grid()
@@ -149,11 +127,6 @@ class DriveState:
         wheels : array_like, shape (2,)
             Speeds of the left and the right wheel, radians per second, as ``wheels_for`` gives them.
 
-        Returns
-        -------
-        Step
-            What has changed.
-
         Raises
         ------
         ValueError
@@ -174,14 +147,11 @@ class DriveState:
     def map(self) -> bool:
         """Fetch the shapes of a look that is done, and begin another when it is time; tell whether one was done.
 
-        Raises
-        ------
-        Exception
-            Whatever ended the look, if it could not be finished.
+        Whatever ended a look that could not be finished is raised.
         """
         done = self._fetch()
         enough = 0 < self._n_news >= (0 if self._rests else NEWS_SHARE * len(self.grid))
-        if enough and not self._finder.busy:
+        if enough and not self.finder.busy:
             self._begin_look()
             done = self._fetch() or done
         return done
@@ -190,10 +160,10 @@ class DriveState:
         """Have the map looked at, or so many of its cells."""
         cells = self.grid.cells
         self._n_news = 0
-        self._finder.look(self.grid.points()[thinned(cells, most)], self.n_scans)
+        self.finder.look(self.grid.points()[thinned(cells, most)], self.n_scans)
 
     def _fetch(self, wait: bool = False) -> bool:
-        news = self._finder.news(wait=wait)
+        news = self.finder.news(wait=wait)
         if news is not None:
             self.found, self.n_scans_found = news.found, news.n_scans
             if isinstance(self.grid, MovingGrid):
@@ -203,22 +173,19 @@ class DriveState:
     def finish(self) -> None:
         """Look at all that was seen, afresh, and wait for it: ``found`` is then what ``find_shapes`` makes of the map.
 
-        Raises
-        ------
-        Exception
-            Whatever ended the look, if it could not be finished.
+        Whatever ended a look that could not be finished is raised.
         """
         looked_at = -1
         while looked_at != len(self.grid):  # what the shapes rule out is given up, and leaves another map
             looked_at = len(self.grid)
-            self._finder.forget()
+            self.finder.forget()
             self._begin_look(most=looked_at)
             self._fetch(wait=True)
 
     @property
     def looks(self) -> bool:
         """Whether a look is under way, or due as soon as the robot rests."""
-        return self._finder.busy or (self._rests and self._n_news > 0)
+        return self.finder.busy or (self._rests and self._n_news > 0)
 
     def _scan(self) -> tuple[Ints, Ints]:
         """Scan from where the robot is, and return the cells that are new, and that are gone, shapes (M, 2)."""
@@ -233,13 +200,7 @@ class DriveState:
         return new, gone
 
     def move_something(self) -> bool:
-        """Move one shape to another place, unseen by the robot; tell whether there was room for that.
-
-        Raises
-        ------
-        ValueError
-            If the map is one of things that stand still.
-        """
+        """Move one shape to another place, unseen by the robot, as ``rearrange``; tell whether there was room."""
         after = with_one_moved(self.world, self.pose, self._hand)
         if after is not None:
             self.rearrange(after)
@@ -278,10 +239,7 @@ class DriveState:
         return self.seen_map.hiding_places(explained)
 
     def compare(self) -> Comparison:
-        """Return this drive beside the way-points and ``explore`` on the same board with the same sensor.
-
-        The first takes some tenths of a second, the other some seconds.
-        """
+        """Return this drive beside the way-points and ``explore`` on the same board, which takes some seconds."""
         self.finish()
         return Comparison((self.by_hand(), *automatic_runs(self.world, self.lidar, self.seed)))
 
@@ -289,10 +247,6 @@ class DriveState:
         """Return what came of this drive so far."""
         name, note = "by hand", "it scans while it drives"
         return Run(name, self.n_scans, self.time, len(self.found), self.score, note, self.pose[None, :2])
-
-    def beside(self, work: Callable[[], T]) -> Future[T]:
-        """Have other work done where shapes are looked for, between two looks."""
-        return self._finder.submit(work)
 
     def _write(self, before: Scans, wheels: ArrayLike) -> None:
         """Write the last scan to the journal, and the one before any step when there is none yet."""
@@ -315,18 +269,13 @@ class DriveState:
     def close(self) -> None:
         """Close the journal, if one is open, and let go of who looks for shapes."""
         self._end_journal()
-        self._finder.close()
+        self.finder.close()
 
     def _end_journal(self) -> None:
         """Close the journal, if one is open; the next step after this begins another."""
         if self._written is not None:
             self._written.close()
         self._written = None
-
-
-def automatic_runs(world: World, lidar: Lidar, rng: int) -> tuple[Run, Run]:
-    """Return what the two automatic movements find on a board."""
-    return from_waypoints(world, lidar, rng), by_exploring(world, lidar, rng)
 
 
 def _only_in(cells: Ints, others: Ints) -> Ints:

@@ -3,7 +3,7 @@
 Beside the story: one map tells what a method can do, many tell how often.
 
 In:  worlds, settings by name, the sensor, a seed.
-Out: a ``Row`` for each map and method; from them a ``PaperTable``, which prints, shows as HTML and is written as CSV.
+Out: a ``Row`` for each map and method; from them a ``Table``, which prints, shows as HTML and is written as CSV.
 
 >>> from primkit.pipeline import ROBUST
 >>> from primkit.world import random_world
@@ -20,7 +20,7 @@ Source: the paper's section 3.3, "Results".
 from ..driving.scripted import drives_on, scripted_route
 from ..driving.wander import wander
 from .accuracy.accuracy_table import AccuracyLine, AccuracyTable, accuracy_as_csv, run_accuracy
-from .accuracy.partial import PartialLine, PartialTable, run_partial
+from .accuracy.partial import PartialLine, run_partial
 from .accuracy.sweeps import REMEDIES, SWEEPS, UNTUNED
 from .accuracy.whole import accuracy_study
 from .cluster import on_cluster
@@ -28,17 +28,17 @@ from .estimate import Estimate
 from .experiment import Experiment, Run, perform, run
 from .journal import JOURNAL, make_folder, n_rows
 from .many import METHODS, maps_in, run_study
-from .oracle import ORACLE, Oracle, oracle_fit, share_seen, shares_seen, told_points
-from .paper_table import Line, PaperTable
+from .oracle import ORACLE, Oracle, oracle_fit, shares_seen, told_points
+from .paper_table import Line
 from .published import PUBLISHED, rows_as_csv, tables, write_tables
 from .row import Row, Score
-from .seen_table import SeenLine, SeenTable, seen_table
+from .seen_table import SeenLine, seen_table
 
 __all__ = ["run_study", "on_cluster", "METHODS", "maps_in", "Experiment", "run", "Run", "perform", "Row", "Score"]
-__all__ += ["tables", "PaperTable", "Line", "PUBLISHED", "rows_as_csv", "write_tables", "Estimate"]
+__all__ += ["tables", "Line", "PUBLISHED", "rows_as_csv", "write_tables", "Estimate"]
 __all__ += ["JOURNAL", "make_folder", "n_rows"]
-__all__ += ["ORACLE", "Oracle", "told_points", "oracle_fit", "share_seen", "shares_seen"]
-__all__ += ["seen_table", "SeenTable", "SeenLine"]
+__all__ += ["ORACLE", "Oracle", "told_points", "oracle_fit", "shares_seen"]
+__all__ += ["seen_table", "SeenLine"]
 __all__ += ["accuracy_study", "run_accuracy", "AccuracyTable", "AccuracyLine", "accuracy_as_csv"]
-__all__ += ["run_partial", "PartialTable", "PartialLine", "SWEEPS", "REMEDIES", "UNTUNED"]
+__all__ += ["run_partial", "PartialLine", "SWEEPS", "REMEDIES", "UNTUNED"]
 __all__ += ["wander", "scripted_route", "drives_on"]

@@ -1,7 +1,4 @@
-"""Experiment: one map, one method, one row of a study.
-
-The whole story once more, with everything that it depends on in one place: scan, fill the grid, find the shapes,
-compare with the truth.
+"""Experiment: one map, one method, one row of a study, with everything that the row depends on in one place.
 
 In:  an ``Experiment``: the map, the settings, the sensor, the seed.
 Out: a ``Row``: the scores under both protocols, the errors in metres, the times in seconds.
@@ -32,8 +29,8 @@ from time import perf_counter
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arguments import Floats
 from ..evaluation import Report, evaluate
 from ..grid import Grid
 from ..lidar import Lidar, Scans, scan
@@ -81,7 +78,7 @@ class Experiment:
     lidar: Lidar = Lidar()  # noqa: RUF009 - frozen, so that sharing it is safe
     tolerance: float = 0.005
     seed: int = 0
-    drive: NDArray[np.float64] | None = None
+    drive: Floats | None = None
 
     def key(self) -> str:
         """Return all that the row depends on as JSON, the program included: equal when the row is."""
@@ -123,7 +120,7 @@ class Run:
     """
 
     scans: Scans
-    points: NDArray[np.float64]
+    points: Floats
     told: int | None
     found: list[Detection]
     robot_time: float
@@ -187,9 +184,7 @@ def run(experiment: Experiment) -> Run:
     return Run(scans, points, told, found, robot_time, computing_time)
 
 
-def _find(
-    experiment: Experiment, scans: Scans, rng: np.random.Generator
-) -> tuple[NDArray[np.float64], int | None, list[Detection]]:
+def _find(experiment: Experiment, scans: Scans, rng: np.random.Generator) -> tuple[Floats, int | None, list[Detection]]:
     """Return the grid's points, the number of shapes that was told, and what the method found."""
     world, settings = experiment.world, experiment.settings
     if isinstance(settings, Oracle):
@@ -212,12 +207,7 @@ def _found_as(report: Report, world: World) -> tuple[Kind | None, ...]:
 
 
 def _score(report: Report) -> Score:
-    return Score(
-        weighted=report.weighted_accuracy,
-        shape=report.shape_accuracy,
-        center=report.center_accuracy,
-        dimension=report.dimension_accuracy,
-    )
+    return Score(report.weighted_accuracy, report.shape_accuracy, report.center_accuracy, report.dimension_accuracy)
 
 
 @cache

@@ -30,7 +30,7 @@ from ..arguments import Floats, Ints
 from ..grid import Grid
 from ..lidar import Lidar, Scans
 from ..raycast import cast_rays
-from ..seen import is_seen
+from ..seen import share_seen
 from ..shapes import Circle, Polygon, Shape
 from ..world import World
 
@@ -116,11 +116,6 @@ def shares_seen(world: World, scans: Scans, lidar: Lidar) -> tuple[float, ...]:
     """
     hits, owners = exact_hits(world, scans, lidar)
     return tuple(share_seen(shape, hits[owners[:, 0] == number]) for number, shape in enumerate(world.shapes))
-
-
-def share_seen(shape: Shape, hits: Floats) -> float:
-    """Return the share of a shape's outline that is seen in hits, shape (N, 2), by the rule of ``seen``."""
-    return float(is_seen(shape.outline(400), hits).mean())
 
 
 def hit_sides(world: World, hits: Floats) -> Ints:

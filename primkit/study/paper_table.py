@@ -1,11 +1,11 @@
 """One of the paper's tables: means over maps with their intervals.
 
 In:  lines, each the means of one method on one group of maps.
-Out: a ``PaperTable``: ``print`` it, end a notebook's cell with it, or write its ``csv()``.
+Out: a ``Table``: ``print`` it, end a notebook's cell with it, or write its ``csv()``.
 
 >>> perfect = Score(1.0, 1.0, 1.0, 1.0)
 >>> line = Line("2 shapes", "ROBUST", "within 5 mm", 1, perfect, robot_time=7.7, computing_time=0.1)
->>> print(PaperTable("Ours", (line,)))
+>>> print(paper_table("Ours", [line]))
 Ours
 <BLANKLINE>
                      total  shape  centre  dimensions  time [s]
@@ -20,7 +20,8 @@ from collections.abc import Sequence
 from dataclasses import astuple, dataclass, fields
 from itertools import groupby
 
-from ..table import Table, as_csv
+from ..table import Table
+from .estimate import columns_of
 from .row import Score
 
 PAPER_HEADER = ("", "total", "shape", "centre", "dimensions", "time [s]")
@@ -73,49 +74,26 @@ class Line:
         return f"{self.robot_time:.1f} + {self.computing_time:.2f}"
 
 
-@dataclass(frozen=True)
-class PaperTable:
-    """Lines in groups of maps, with a title above and notes below.
+def paper_table(title: str, lines: Sequence[Line], notes: Sequence[str] = ()) -> Table:
+    """Return lines as a table; neighbours with the same ``maps`` make a group.
 
-    Parameters
-    ----------
-    title : str
-        What the table shows.
-    lines : tuple of Line
-        Neighbours with the same ``maps`` make a group.
-    notes : tuple of str
-        What a reader must know, one thought each.
+    Its CSV has all numbers: scores from 0 to 1, times in seconds.
     """
+    rows: list[tuple[str, ...]] = []
+    for maps, group in groupby(lines, key=lambda line: line.maps):
+        own = list(group)
+        rows += [(f"{maps}, {_maps(own)}",), *(line.cells() for line in own)]
+    names = columns_of(part.name for part in fields(Score))
+    header = ("maps", "n", "method", "scoring", *names, "robot_time_s", "computing_time_s", "time_s")
+    file = f"{title.split('.')[0].lower().replace(' ', '-')}.csv"
+    numbers = [header, *map(_numbers, lines)]
+    return Table(PAPER_HEADER, rows, title, tuple(notes), lines=tuple(lines), numbers=numbers, file=file)
 
-    title: str
-    lines: tuple[Line, ...]
-    notes: tuple[str, ...] = ()
 
-    def table(self) -> Table:
-        """Return the lines as texts: for each group of maps its heading, and each method's means."""
-        rows: list[tuple[str, ...]] = []
-        for maps, group in groupby(self.lines, key=lambda line: line.maps):
-            lines = list(group)
-            rows += [(f"{maps}, {_maps(lines)}",), *(line.cells() for line in lines)]
-        return Table(PAPER_HEADER, rows, self.title, self.notes)
-
-    def __str__(self) -> str:
-        return str(self.table())
-
-    def _repr_html_(self) -> str:
-        return self.table()._repr_html_()
-
-    def csv(self) -> str:
-        """Return the lines with all their numbers as CSV; scores from 0 to 1, times in seconds."""
-        names = [name for part in fields(Score) for name in (part.name, f"{part.name}_low", f"{part.name}_high")]
-        header = ("maps", "n", "method", "scoring", *names, "robot_time_s", "computing_time_s", "time_s")
-        rows = []
-        for line in self.lines:
-            ends = [(None,) * 4 if end is None else astuple(end) for end in (line.low, line.high)]
-            scores = [number for triple in zip(astuple(line.mean), *ends, strict=True) for number in triple]
-            times = (line.robot_time, line.computing_time, line.time)
-            rows.append((line.maps, line.n, line.method, line.scoring, *scores, *times))
-        return as_csv(header, rows)
+def _numbers(line: Line) -> tuple[object, ...]:
+    ends = [(None,) * 4 if end is None else astuple(end) for end in (line.low, line.high)]
+    scores = [number for triple in zip(astuple(line.mean), *ends, strict=True) for number in triple]
+    return (line.maps, line.n, line.method, line.scoring, *scores, line.robot_time, line.computing_time, line.time)
 
 
 def _maps(lines: Sequence[Line]) -> str:

@@ -20,9 +20,9 @@ import numpy as np
 
 from ..formats import StrPath, write_atomically
 from ..shapes import PRIMITIVES
-from ..table import as_csv
+from ..table import Table, as_csv
 from .estimate import interval
-from .paper_table import Line, PaperTable
+from .paper_table import Line, paper_table
 from .row import Movement, Row, Score
 
 AVERAGE = "average"
@@ -66,7 +66,7 @@ PUBLISHED: Mapping[Movement, Mapping[str, Figures]] = {
 }
 
 
-def tables(rows: Iterable[Row], *, driven: str = "") -> tuple[PaperTable, ...]:
+def tables(rows: Iterable[Row], *, driven: str = "") -> tuple[Table, ...]:
     """Return the paper's tables with our means beside the published figures.
 
     Parameters
@@ -78,7 +78,7 @@ def tables(rows: Iterable[Row], *, driven: str = "") -> tuple[PaperTable, ...]:
 
     Returns
     -------
-    tuple of PaperTable
+    tuple of Table
         Tables 1 and 2 for rows with automatic movement, 3 and 4 for manual: those that the rows have maps for.
 
     Raises
@@ -127,19 +127,19 @@ def rows_as_csv(rows: Iterable[Row]) -> str:
     return as_csv(header + errors, lines)
 
 
-def write_tables(folder: StrPath, made: Iterable[PaperTable], rows: Iterable[Row]) -> list[str]:
+def write_tables(folder: StrPath, made: Iterable[Table], rows: Iterable[Row]) -> list[str]:
     """Write each table and all rows as CSV into a folder, and return the files' names."""
-    files = {f"{table.title.split('.')[0].lower().replace(' ', '-')}.csv": table.csv() for table in made}
+    files = {table.file: table.csv() for table in made}
     files["rows.csv"] = rows_as_csv(rows)
     for name, text in files.items():
         write_atomically(Path(folder) / name, text)
     return list(files)
 
 
-def _table(title: str, rows: Sequence[Row], groups: Mapping[str, Sequence[Row]]) -> PaperTable:
+def _table(title: str, rows: Sequence[Row], groups: Mapping[str, Sequence[Row]]) -> Table:
     """Return one table: for each group of maps the published figures, then each method under each protocol."""
     lines = [line for maps, chosen in groups.items() if chosen for line in _lines(maps, chosen)]
-    return PaperTable(title, tuple(lines), _notes(title, rows, lines))
+    return paper_table(title, lines, _notes(title, rows, lines))
 
 
 def _lines(maps: str, rows: Sequence[Row]) -> list[Line]:

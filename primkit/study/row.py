@@ -90,6 +90,11 @@ class Row:
         return len(self.kinds)
 
     @property
+    def n_dimensions(self) -> int:
+        """How many dimensions these have together."""
+        return sum(N_DIMENSIONS[kind] for kind in self.kinds)
+
+    @property
     def n_false(self) -> int:
         """How many shapes were found where there are none."""
         return self.n_found - sum(kind is not None for kind in self.found_as)
@@ -113,7 +118,7 @@ class Row:
         if not self.kinds:
             return self.fair
         center = _n_right(self.center_errors, tolerance) / (2 * self.n_shapes)
-        dimension = _n_right(self.dimension_errors, tolerance) / sum(N_DIMENSIONS[kind] for kind in self.kinds)
+        dimension = _n_right(self.dimension_errors, tolerance) / self.n_dimensions
         return _weighted(self.fair.shape, center, dimension)
 
     def scores_by_shape(self) -> list[Score]:

@@ -1,13 +1,12 @@
-"""Manual: how right the shapes of a drive are, by how much of their outline it saw.
+"""Seen table: how right the shapes of a drive are, by how much of their outline it saw.
 
 In:  the rows of a study with manual movement.
-Out: a ``SeenTable``: for each method, the shapes that were seen on at least 60 % of their outline, and the others.
+Out: a ``Table``: for each method, the shapes that were seen on at least 60 % of their outline, and the others.
 
 >>> print(str(seen_table([])).splitlines()[0])
 Shapes by how much of their outline was seen, manual movement
 
-Whoever drives leaves something out, and what was never seen nobody can measure. Tables 3 and 4 count it all the same;
-here each shape stands for itself.
+Tables 3 and 4 count shapes that a drive left out as wrong; here each shape stands for itself, by what was seen of it.
 """
 
 from __future__ import annotations
@@ -15,16 +14,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import astuple, dataclass
 from itertools import groupby
-from typing import ClassVar
 
 import numpy as np
 
-from ..table import Table, as_csv
+from ..table import Table
 from .estimate import Estimate, ratio_of
 from .row import Row, Score
 
 ENOUGH_SEEN = 0.6  # share of an outline
 SEEN_HEADER = ("", "total", "shape", "centre", "dimensions")
+SEEN_COLUMNS = ("map", "method", "kind", "found_as", "seen", "weighted", "shape", "center", "dimension")
 
 
 @dataclass(frozen=True)
@@ -64,48 +63,10 @@ class SeenLine:
         return (self.method, str(self.weighted), *parts)
 
 
-@dataclass(frozen=True)
-class SeenTable:
-    """Lines by how much was seen; prints as text, shows as HTML in a notebook.
-
-    Parameters
-    ----------
-    lines : tuple of SeenLine
-        Neighbours with the same heading make a group.
-    shapes : tuple of tuple
-        One for each shape and method: map, method, kind, kind found, share seen, and the four scores.
-    notes : tuple of str
-        What a reader must know, one thought each.
-    """
-
-    lines: tuple[SeenLine, ...]
-    shapes: tuple[tuple[object, ...], ...]
-    notes: tuple[str, ...] = ()
-    title: ClassVar[str] = "Shapes by how much of their outline was seen, manual movement"
-    file: ClassVar[str] = "seen.csv"
-
-    def table(self) -> Table:
-        """Return the lines as texts, by how much was seen."""
-        rows: list[tuple[str, ...]] = []
-        for heading, lines in groupby(self.lines, key=SeenLine.heading):
-            rows += [(heading,), *(line.cells() for line in lines)]
-        return Table(SEEN_HEADER, rows, self.title, self.notes)
-
-    def __str__(self) -> str:
-        return str(self.table())
-
-    def _repr_html_(self) -> str:
-        return self.table()._repr_html_()
-
-    def csv(self) -> str:
-        """Return one line for each shape and method as CSV: shares and scores from 0 to 1."""
-        return as_csv(
-            ("map", "method", "kind", "found_as", "seen", "weighted", "shape", "center", "dimension"), self.shapes
-        )
-
-
-def seen_table(rows: Iterable[Row], enough: float = ENOUGH_SEEN) -> SeenTable:
+def seen_table(rows: Iterable[Row], enough: float = ENOUGH_SEEN) -> Table:
     """Return how right the shapes are that a drive saw enough of, and how right the others.
+
+    Its lines are ``SeenLine``; its CSV has one line for each shape and method, shares and scores from 0 to 1.
 
     Parameters
     ----------
@@ -125,12 +86,17 @@ def seen_table(rows: Iterable[Row], enough: float = ENOUGH_SEEN) -> SeenTable:
         for method in dict.fromkeys(row.settings for row in rows):
             line = _line(group, [row for row in rows if row.settings == method], enough, wanted)
             lines += [] if line is None else [line]
+    cells: list[tuple[str, ...]] = []
+    for heading, alike in groupby(lines, key=SeenLine.heading):
+        cells += [(heading,), *(line.cells() for line in alike)]
     shapes = [
         (row.map, row.settings, kind, found, seen, *astuple(score))
         for row in rows
         for kind, found, seen, score in zip(row.kinds, row.found_as, row.seen, row.scores_by_shape(), strict=True)
     ]
-    return SeenTable(tuple(lines), tuple(shapes), _notes(rows, lines))
+    title = "Shapes by how much of their outline was seen, manual movement"
+    numbers = [SEEN_COLUMNS, *shapes]
+    return Table(SEEN_HEADER, cells, title, _notes(rows, lines), lines=tuple(lines), numbers=numbers, file="seen.csv")
 
 
 def _line(group: str, rows: Sequence[Row], enough: float, wanted: bool) -> SeenLine | None:

@@ -9,22 +9,6 @@ Out: an ``Explorer``; its ``draw(**values)`` returns the picture as SVG text.
 >>> svg = rays().draw(beams=24)
 >>> what_it_says(svg)
 '9 of 24 beams meet an outline within 0.3 m, with noise of 0 mm; the nearest hit is 17.0 cm away.'
-
-The rooms, each of which imports only those before it:
-
-===============  ==================================================
-``drawing.py``   SVG as text: axes in metres, points, shapes
-``slider.py``    ``explore``: controls, named settings, the twin
-``boards.py``    lesson 00: a board for each seed
-``rays.py``      lesson 01: beams among shapes
-``cells.py``     lesson 02: a circle seen through the grid
-``groups.py``    lesson 03: K-Means step by step
-``edges.py``     lesson 04: RANSAC trial by trial, and its band
-``arcs.py``      lesson 05: the circles that five ways see in an arc
-``naming.py``    lesson 06: candidates, what each costs, the chosen one
-``scoring.py``   lesson 07: tolerance, weights, one-sided or two-sided
-``wheels.py``    lesson 08: the arc that two wheels make, and straight pieces
-===============  ==================================================
 """
 
 from .arcs import arcs

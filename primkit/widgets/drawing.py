@@ -198,16 +198,15 @@ class Frame:
         )
 
 
-def board_frame(size: float = 1.0, *, width: int = 425) -> Frame:
+def board_frame(size: float = 1.0) -> Frame:
     """Return the frame of a board of ``size`` metres, centred on the origin, with the same scale both ways."""
-    return square_frame((0.0, 0.0), size, width=width)
+    return square_frame((0.0, 0.0), size)
 
 
-def square_frame(center: tuple[float, float], size: float, *, width: int = 425) -> Frame:
+def square_frame(center: tuple[float, float], size: float) -> Frame:
     """Return the frame of a square piece of the board around ``center``, ``size`` metres wide: a magnifying glass."""
     (x, y), half = center, size / 2
-    height = width - PAD_LEFT - PAD_RIGHT + PAD_TOP + PAD_BOTTOM
-    return Frame((x - half, x + half), (y - half, y + half), width=width, height=height)
+    return Frame((x - half, x + half), (y - half, y + half), width=425, height=425)
 
 
 def picture(frame: Frame, *parts: str, title: str, says: str) -> str:
@@ -223,11 +222,10 @@ def picture(frame: Frame, *parts: str, title: str, says: str) -> str:
     return _svg(frame.width, frame.height, title, says, frame.axes() + inside + heading)
 
 
-def side_by_side(pictures: Sequence[str], captions: Sequence[str], *, columns: int = 2, says: str = "") -> str:
-    """Return pictures of the same size as small multiples in one SVG, with a caption above each."""
+def side_by_side(pictures: Sequence[str], captions: Sequence[str], *, says: str = "") -> str:
+    """Return pictures of the same size as small multiples in one SVG, two in a row, with a caption above each."""
     width, height = size_of(pictures[0])
-    columns = min(columns, len(pictures))
-    rows = -(-len(pictures) // columns)
+    columns, rows = min(2, len(pictures)), -(-len(pictures) // 2)
     cells = []
     for number, (svg, caption) in enumerate(zip(pictures, captions, strict=True)):
         x, y = number % columns * width, number // columns * (height + 26)
@@ -292,8 +290,8 @@ def words_at(
     return f'<text x="{_n(x)}" y="{_n(y)}" {look}>{escape(words)}</text>'
 
 
-def round_ticks(low: float, high: float, most: int = 6) -> tuple[float, ...]:
-    """Return at most ``most`` round numbers from low to high.
+def round_ticks(low: float, high: float) -> tuple[float, ...]:
+    """Return at most six round numbers from low to high.
 
     >>> round_ticks(-0.5, 0.5), round_ticks(0, 10)
     ((-0.4, -0.2, 0.0, 0.2, 0.4), (0.0, 2.0, 4.0, 6.0, 8.0, 10.0))
@@ -301,7 +299,7 @@ def round_ticks(low: float, high: float, most: int = 6) -> tuple[float, ...]:
     power = 10.0 ** np.floor(np.log10(high - low) - 1)
     for step in (power * m for m in (1, 2, 5, 10, 20, 50)):
         first, last = np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9)
-        if last - first < most:
+        if last - first < 6:
             break
     return tuple((np.round(np.arange(first, last + 1) * step, 10) + 0.0).tolist())
 

@@ -2,6 +2,7 @@
 
 >>> edges()
 Slider: trial, threshold, noise, seed
+>>> from primkit.widgets.drawing import what_it_says
 >>> what_it_says(edges().draw(trial=1))
 'Trial 1 draws two points and finds 10 inliers of 435; the best so far is trial 1 with 10.'
 """
@@ -23,11 +24,8 @@ from ..ransac import draw_samples
 from ..robot import teleport_poses
 from ..shapes import Polygon
 from ..world import World
-from .drawing import Frame, picture, square_frame, what_it_says
+from .drawing import Frame, picture, square_frame
 from .slider import Explorer, Picture, Slider, explore
-
-__all__ = ["edges", "draw_edges", "diagram", "show_lines", "what_it_says"]
-
 
 RECTANGLE = Polygon([(-0.13, -0.09), (0.13, -0.09), (0.13, 0.09), (-0.13, 0.09)]).moved((0.02, 0.01), 0.3)
 MOST_TRIALS = 60

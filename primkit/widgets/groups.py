@@ -23,12 +23,15 @@ from .slider import Choice, Explorer, Picture, Slider, explore
 FOUR_SHAPES, LONG_AND_SMALL, CLOSE_PAIR = "four shapes", "long and small", "3 cm apart"
 RANDOM_START, SPREAD_START = "random points", "k-means++"
 
+
+def _bar(left: float, right: float, half: float) -> Polygon:
+    return Polygon([(left, -half), (right, -half), (right, half), (left, half)])
+
+
 BOARDS = {
     FOUR_SHAPES: random_world(4, style="free", rng=7),
-    LONG_AND_SMALL: World(
-        [Polygon([(-0.35, -0.025), (0.15, -0.025), (0.15, 0.025), (-0.35, 0.025)]), Circle((0.24, 0), 0.04)]
-    ),
-    CLOSE_PAIR: World([Polygon([(-0.2, -0.12), (0.1, -0.12), (0.1, 0.12), (-0.2, 0.12)]), Circle((0.17, 0), 0.04)]),
+    LONG_AND_SMALL: World([_bar(-0.35, 0.15, 0.025), Circle((0.24, 0), 0.04)]),
+    CLOSE_PAIR: World([_bar(-0.2, 0.1, 0.12), Circle((0.17, 0), 0.04)]),
 }
 KMEANS_ROUNDS = 20  # of an assignment and an update each: most starts settle in half as many
 # Groups are neither black nor square, as the centres are. Six colours with five signs: no pair twice in 30 groups.
@@ -36,10 +39,8 @@ GROUP_COLORS = tuple(color for color in CLUSTER_COLORS if color != BLACK)
 GROUP_SIGNS = ("dot", "cross", "diamond", "triangle", "triangle down")
 SIGNS_PER_GROUP = 8  # signs on each group are larger, so that it can be told from the others without colour
 GROUP_LEGEND = (
-    ("start", INK, "ring"),
-    ("centre now", INK, "square"),
-    ("its way", INK, "line"),
-    ("border", GREY, "dashed"),
+    *(("start", INK, "ring"), ("centre now", INK, "square")),
+    *(("its way", INK, "line"), ("border", GREY, "dashed")),
 )
 
 
@@ -67,9 +68,8 @@ def groups() -> Explorer:
 def draw_groups(board: str, start: str, k: int, seed: int, step: int) -> str:
     """Draw K-Means after so many steps: 0 is the start, odd steps assign, even ones move the centres."""
     points = points_of(board)
-    way = walk(
-        points, (random_points if start == RANDOM_START else spread_points)(points, k, np.random.default_rng(seed))
-    )
+    first = random_points if start == RANDOM_START else spread_points
+    way = walk(points, first(points, k, np.random.default_rng(seed)))
     used = way[max(0, step - 1) // 2]  # the centres that the labels were made with
     centers, labels = way[step // 2], nearest(points, used)
     frame = board_frame()
@@ -119,9 +119,8 @@ def _group(frame: Frame, points: Floats, j: int) -> str:
         return ""
     color, sign = GROUP_COLORS[j % len(GROUP_COLORS)], GROUP_SIGNS[j % len(GROUP_SIGNS)]
     around = points[np.argsort(np.arctan2(*(points - points.mean(axis=0)).T))]
-    return frame.points(points, color, size=3.5) + frame.points(
-        around[:: -(-len(points) // SIGNS_PER_GROUP)], color, sign, 9
-    )
+    signs = around[:: -(-len(points) // SIGNS_PER_GROUP)]
+    return frame.points(points, color, size=3.5) + frame.points(signs, color, sign, 9)
 
 
 def _borders(frame: Frame, centers: Floats) -> str:

@@ -2,25 +2,25 @@
 
 >>> scoring()
 Slider: tolerance, weight of shape, centre's part of the rest, map, noise
->>> one = Errors(1.0, np.array([0.001, -0.002]), np.array([-0.02]), 2, 1)
->>> weighted(one, np.array([0.005]), (0.4, 0.3, 0.3)), weighted(one, np.array([0.005]), (0.4, 0.3, 0.3), one_sided=True)
-(array([0.7]), array([1.]))
+>>> weighted(row_of("ROBUST", "4-03", noise=0), np.array([0.0, 0.01]), (0.4, 0.3, 0.3))  # exactly, and within 1 cm
+array([0.4, 1. ])
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterable
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 
 from ..arguments import ROUNDING, Floats
-from ..evaluation import CENTER_WEIGHT, GATE, SHAPE_WEIGHT, evaluate
+from ..evaluation import CENTER_WEIGHT, GATE, SHAPE_WEIGHT
 from ..formats import paper_suite
 from ..lidar import Lidar
 from ..pipeline import PAPER, ROBUST
 from ..plots.look import BLUE, GREY, INK, PALE, SKY, VERMILION
-from ..study import Experiment, run
+from ..study import Experiment, Row, perform
 from ..world import World
 from .drawing import Frame, picture, side_by_side
 from .slider import Choice, Explorer, Picture, Slider, explore
@@ -50,27 +50,6 @@ SCORE_TIE = 1e-9
 LETTER_WIDTH = 6.6  # px: the width of one letter in the bar
 
 
-@dataclass(frozen=True, eq=False)
-class Errors:
-    """What a comparison with the truth leaves for scoring.
-
-    Parameters
-    ----------
-    shape : float
-        Shape accuracy: it has no tolerance.
-    center, dimension : array, shape (N,)
-        found - true of all values that can be compared, metres.
-    n_center, n_dimension : int
-        How many there are in the truth: those that are not above count as wrong.
-    """
-
-    shape: float
-    center: Floats
-    dimension: Floats
-    n_center: int
-    n_dimension: int
-
-
 @cache
 def scoring() -> Explorer:
     """Return the slider of lesson 07: tolerance and weights; PAPER and ROBUST on three maps, with and without noise."""
@@ -94,7 +73,7 @@ def scoring() -> Explorer:
 def draw_scores(tolerance: float, shape: float, center: float, board: str, noise: int) -> str:
     """Draw both methods' scores against the tolerance [mm], two-sided and one-sided; noise in mm."""
     weights = (shape, (1 - shape) * center, (1 - shape) * (1 - center))
-    results = {name: errors_of(name, board, noise) for name in QUICK_METHODS}
+    results = {name: row_of(name, board, noise) for name in QUICK_METHODS}
     here = np.array([tolerance]) / 1000
     fair, lax = (
         {name: float(weighted(result, here, weights, one_sided=one)[0]) for name, result in results.items()}
@@ -132,37 +111,29 @@ def draw_scores(tolerance: float, shape: float, center: float, board: str, noise
 
 
 @cache
-def errors_of(method: str, board: str, noise: int) -> Errors:
-    """Return what a method's result on a map of the suite is off by; noise in mm. Found once, then kept."""
-    world = _suite()[board]
-    experiment = Experiment(board, world, method, QUICK_METHODS[method], lidar=Lidar(noise_std=noise / 1000))
-    report = evaluate(run(experiment).found, world)
-    return Errors(
-        shape=report.shape_accuracy,
-        center=np.array([e for m in report.matches for e in m.center_error]),
-        dimension=np.array([e for m in report.matches for e in m.dimension_error or ()]),
-        n_center=2 * len(world.shapes),
-        n_dimension=sum(len(s.dimensions) for s in world.shapes),
-    )
-
-
-def weighted(errors: Errors, tolerance: Floats, weights: Weights, *, one_sided: bool = False) -> Floats:
-    """Return the weighted accuracy at each tolerance, shape (N,), metres.
-
-    ``one_sided``: every value that is too small counts as right, as in the published scoring (which rounds as well).
-    """
-
-    def share(off: Floats, n: int) -> Floats:
-        off = off if one_sided else np.abs(off)
-        return (off <= tolerance[:, None] + ROUNDING).sum(axis=1) / n
-
-    center, dimension = share(errors.center, errors.n_center), share(errors.dimension, errors.n_dimension)
-    return weights[0] * errors.shape + weights[1] * center + weights[2] * dimension
+def row_of(method: str, board: str, noise: int) -> Row:
+    """Return what became of a map of the suite with a method; noise in mm. Found once, then kept."""
+    lidar = Lidar(noise_std=noise / 1000)
+    return perform(Experiment(board, _suite()[board], method, QUICK_METHODS[method], lidar=lidar))
 
 
 @cache
 def _suite() -> dict[str, World]:
     return paper_suite()
+
+
+def weighted(row: Row, tolerance: Floats, weights: Weights, *, one_sided: bool = False) -> Floats:
+    """Return the weighted accuracy at each tolerance, shape (N,), metres.
+
+    ``one_sided``: every value that is too small counts as right, as in the published scoring (which rounds as well).
+    """
+
+    def share(errors: Iterable[float], n: int) -> Floats:
+        off = np.array(list(errors)) if one_sided else np.abs(list(errors))
+        return (off <= tolerance[:, None] + ROUNDING).sum(axis=1) / n
+
+    center, dimension = share(row.center_errors, 2 * row.n_shapes), share(row.dimension_errors, row.n_dimensions)
+    return weights[0] * row.fair.shape + weights[1] * center + weights[2] * dimension
 
 
 def _two(score: float) -> str:
@@ -198,10 +169,7 @@ def diagram() -> Picture:
     return Picture(side_by_side(panels, captions), "Diagram: one-to-one matching, in list order and all together")
 
 
-TRUE, FOUND = (
-    np.array([(0.0, 0.04), (0.075, 0.04)]),
-    np.array([(0.044, 0.009), (0.106, 0.015)]),
-)  # m: the diagram's
+TRUE, FOUND = np.array([[(0.0, 0.04), (0.075, 0.04)], [(0.044, 0.009), (0.106, 0.015)]])  # m: the diagram's
 
 
 def _pairing(pairs: list[tuple[int, int]], title: str, note: str) -> str:

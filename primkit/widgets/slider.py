@@ -155,12 +155,12 @@ class Explorer:
         """Return the values at every corner of the box that the controls span; of choices, all options."""
         return [dict(zip(self.start, values, strict=True)) for values in product(*(c.ends for c in self.controls))]
 
-    def twin(self, columns: int = 2) -> Picture:
+    def twin(self) -> Picture:
         """Return the named settings side by side as one picture, for where nothing can be moved."""
         pictures = [self.draw(**values) for values in self.settings.values()]
         if not pictures:
             raise ValueError("a twin needs named settings, got none")
-        return Picture(side_by_side(pictures, list(self.settings), columns=columns), f"{self!r}, its named settings")
+        return Picture(side_by_side(pictures, list(self.settings)), f"{self!r}, its named settings")
 
     @cached_property
     def panel(self) -> Any:

@@ -1,7 +1,7 @@
 """Accuracy: how right each method is, against noise, shapes, scans, strays and partial views; the oracle beside it.
 
 In:  settings by name, the sweeps' names, a number of maps, a seed.
-Out: ``AccuracyTable`` and ``PartialTable``, which print, show as HTML and are written as CSV.
+Out: ``AccuracyTable`` and, of partial views, ``Table``, which print, show as HTML and are written as CSV.
 
 Its names are those of ``study``, which a user imports.
 """

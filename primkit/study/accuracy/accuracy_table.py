@@ -1,15 +1,14 @@
-"""Accuracy: how right the methods are against noise, number of shapes, number of scans and spurious returns.
+"""Accuracy table: how right the methods are, level by level of a sweep; the oracle beside them.
 
 In:  the name of a sweep, a number of maps, a seed.
-Out: an ``AccuracyTable``: for each level and method the weighted accuracy, the count and the errors, the oracle's
-beside them.
+Out: an ``AccuracyTable``: for each level and method the weighted accuracy, the count and the errors.
 
 >>> from primkit.pipeline import ROBUST
 >>> table = run_accuracy("gap", 2, settings={"ROBUST": ROBUST}, jobs=1)
 >>> [(line.level, line.method, line.coarse.value) for line in table.lines[:2]]
 [('gap 5 cm', 'ROBUST', 1.0), ('gap 5 cm', 'oracle', 1.0)]
 
-What a method could do at best, the oracle shows (``oracle.py``); what is drawn, ``sweeps.py`` says.
+Not here: what a method could do at best (``oracle.py``), and what is changed (``sweeps.py``).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Views: the shapes that one drive saw in part, and what was made of them.
+"""Drive views: the shapes that one drive saw in part, and what was made of them.
 
 In:  the sensor's noise, the number of the drive, a seed.
 Out: a ``View`` of each shape that was seen on 40 to 90 % of its outline.
@@ -25,9 +25,10 @@ from ...evaluation import match
 from ...lidar import Lidar
 from ...measure import Detection
 from ...pipeline import ROBUST
+from ...seen import share_seen
 from ...shapes import Circle, Kind, Shape
 from ..experiment import Experiment, run
-from ..oracle import exact_hits, share_seen
+from ..oracle import exact_hits
 from .sweeps import UNTUNED, roomy_world
 
 N_SHAPES = 4

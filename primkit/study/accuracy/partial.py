@@ -1,7 +1,7 @@
 """Partial: what is measured of shapes that a driving robot sees in part.
 
 In:  a number of drives, the sensor's noise, a seed.
-Out: a ``PartialTable``: how right the measured dimensions are, whether an unseen one is claimed to be measured, and
+Out: a ``Table``: how right the measured dimensions are, whether an unseen one is claimed to be measured, and
 whether the stated standard deviations are true.
 
 >>> table = run_partial(2, noises=(0.0,), jobs=1)
@@ -16,12 +16,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
-from typing import ClassVar
 
 import numpy as np
 
 from ...arguments import ROUNDING, Floats, as_count, as_positive
-from ...table import Table, as_csv
+from ...table import Table
 from ..estimate import Z95, Estimate, columns_of, in_columns, pooled_share
 from ..many import checked_jobs, in_parallel
 from .accuracy_table import COARSE
@@ -91,35 +90,6 @@ class PartialLine:
         return (f"{1000 * self.noise_std:g} mm", *kinds, *found, *right)
 
 
-@dataclass(frozen=True)
-class PartialTable:
-    """Lines by range noise; prints as text, shows as HTML in a notebook."""
-
-    lines: tuple[PartialLine, ...]
-    notes: tuple[str, ...] = ()
-    title: str = "Partial views: random drives that see 40 to 90 % of each outline"
-    file: ClassVar[str] = "partial.csv"
-
-    def table(self) -> Table:
-        """Return the lines as texts, in three parts: kinds, what was measured, how right that is."""
-        drives = " or ".join(dict.fromkeys(str(line.n_drives) for line in self.lines))
-        rows = [(f"range noise, {drives} drives",), *(line.cells() for line in self.lines)]
-        return Table(PARTIAL_HEADER, rows, self.title, self.notes, folds=(5, 9))
-
-    def __str__(self) -> str:
-        return str(self.table())
-
-    def _repr_html_(self) -> str:
-        return self.table()._repr_html_()
-
-    def csv(self) -> str:
-        """Return the lines with all their numbers as CSV: shares from 0 to 1, noise in metres."""
-        names = [field.name for field in fields(PartialLine)]  # the noise, seven counts, and estimates
-        lines = [list(vars(line).values()) for line in self.lines]
-        rows = [(*values[:8], *in_columns(values[8:])) for values in lines]
-        return as_csv(("noise_std_m", *names[1:8], *columns_of(names[8:])), rows)
-
-
 def run_partial(
     n_drives: int = 100,
     *,
@@ -127,8 +97,8 @@ def run_partial(
     seed: int = 0,
     jobs: int | None = -1,
     progress: bool = True,
-) -> PartialTable:
-    """Drive among shapes, and say how right what was measured of those seen in part is.
+) -> Table:
+    """Drive among shapes, and say how right what was measured of those seen in part is: lines are ``PartialLine``.
 
     Parameters
     ----------
@@ -156,7 +126,29 @@ def run_partial(
         partial_line(noise, n_drives, [view for views in done[i * n_drives : (i + 1) * n_drives] for view in views])
         for i, noise in enumerate(levels)
     ]
-    return PartialTable(tuple(lines), _notes(n_drives, seed))
+    return partial_table(lines, _notes(n_drives, seed))
+
+
+def partial_table(lines: Sequence[PartialLine], notes: Sequence[str] = ()) -> Table:
+    """Return lines as a table: kinds, what was measured, how right that is.
+
+    Its CSV has all numbers: shares from 0 to 1, noise in metres.
+    """
+    drives = " or ".join(dict.fromkeys(str(line.n_drives) for line in lines))
+    rows = [(f"range noise, {drives} drives",), *(line.cells() for line in lines)]
+    names = [field.name for field in fields(PartialLine)]  # the noise, seven counts, and estimates
+    values = [list(vars(line).values()) for line in lines]
+    numbers = [(*own[:8], *in_columns(own[8:])) for own in values]
+    return Table(
+        PARTIAL_HEADER,
+        rows,
+        "Partial views: random drives that see 40 to 90 % of each outline",
+        tuple(notes),
+        folds=(5, 9),
+        lines=tuple(lines),
+        numbers=[("noise_std_m", *names[1:8], *columns_of(names[8:])), *numbers],
+        file="partial.csv",
+    )
 
 
 def partial_line(noise_std: float, n_drives: int, views: Sequence[View]) -> PartialLine:

@@ -1,4 +1,4 @@
-"""Together: the whole accuracy study, one sweep after the other, and its files.
+"""Whole: the accuracy study, one sweep after the other, and its files.
 
 In:  names of sweeps, a number of maps, a folder.
 Out: a table for each, as it is done; in the folder ``accuracy.csv``, ``partial.csv`` and the journal.
@@ -15,9 +15,10 @@ from pathlib import Path
 
 from ...formats import StrPath, write_atomically
 from ...pipeline import Settings
+from ...table import Table
 from ..many import METHODS
 from .accuracy_table import AccuracyTable, accuracy_as_csv, run_accuracy
-from .partial import PartialTable, run_partial
+from .partial import run_partial
 from .sweeps import SWEEPS
 
 PARTIAL = "partial"
@@ -32,7 +33,7 @@ def accuracy_study(
     settings: Mapping[str, Settings] = METHODS,
     seed: int = 0,
     jobs: int | None = -1,
-) -> Iterator[AccuracyTable | PartialTable]:
+) -> Iterator[AccuracyTable | Table]:
     """Yield the table of each sweep as it is done; the files grow with it. What all tables share, the last one notes.
 
     Parameters

@@ -3,7 +3,7 @@
 In:  for each part its task, its words, the share of right answers, and the most frequent wrong one with its count.
 Out: a matplotlib ``Figure``: a bar for each part, the usual wrong answer beside it.
 
->>> class_figure("ps1", 4, [("half", "lengths", 0.75, ("twice for half", 1))]).axes[0].get_xlabel()
+>>> plot_class("ps1", 4, [("half", "lengths", 0.75, ("twice for half", 1))]).axes[0].get_xlabel()
 'share of right answers [%]'
 """
 
@@ -27,7 +27,7 @@ TITLE_LETTERS = 84  # letters in a line of the title
 FAULT_LETTERS = 46  # letters of a wrong answer's name
 
 
-def class_figure(name: str, students: int, parts: Sequence[Part]) -> Figure:
+def plot_class(name: str, students: int, parts: Sequence[Part]) -> Figure:
     """Return the picture of a class and a problem set.
 
     Parameters
