@@ -1,9 +1,15 @@
-"""What holds for all tests: the same examples on every run, and pictures without a window."""
+"""What holds for all tests: the same examples on every run, pictures without a window, and threads that wait asleep."""
 
+import os
 from pathlib import Path
+
+# Threads of scikit-learn's that wait for work keep a core busy by default, which the other tests need. It is read when
+# scikit-learn is loaded, here and in kernels and programs that tests start.
+os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 
 import matplotlib
 import numpy as np
+import pytest
 from hypothesis import settings
 
 # The same examples on every run and every machine; no time limit, which a busy machine would break.
@@ -21,6 +27,15 @@ def pytest_addoption(parser):
     parser.addoption(
         "--screenshots", type=Path, metavar="DIR", help="keep the browser's pictures of the lessons in this folder"
     )
+
+
+@pytest.fixture(scope="session")
+def screenshots(request):
+    """The folder for pictures of the lessons, if it is asked for by --screenshots."""
+    folder = request.config.getoption("screenshots", None)
+    if folder:
+        folder.mkdir(parents=True, exist_ok=True)
+    return folder
 
 
 def pytest_terminal_summary(terminalreporter):

@@ -1,35 +1,15 @@
 """One Jupyter and one browser for all tests in here; without them they are skipped, or fail where they must be."""
 
-import os
-import shutil
-
 import pytest
 
-from .lab import enter, jupyter
-
-BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+from .lab import chromium, enter, jupyter
 
 
 @pytest.fixture(scope="package")
 def browser():
-    """Chromium without a window. PRIMKIT_BROWSER=required makes its absence a failure."""
-    program = next(filter(None, map(shutil.which, BROWSERS)), None)
-    if program is None:
-        _absent(f"none of these is installed: {', '.join(BROWSERS)}")
-    try:
-        from playwright.sync_api import sync_playwright
-    except ImportError:
-        _absent("playwright, which drives it, is not installed")
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+    """Chromium without a window."""
+    with chromium() as browser:
         yield browser
-        browser.close()
-
-
-def _absent(why):
-    """Skip the test, or let it fail where a browser must be."""
-    end = pytest.fail if os.environ.get("PRIMKIT_BROWSER") == "required" else pytest.skip
-    end(f"the lessons are tried in a browser: {why}")
 
 
 @pytest.fixture(scope="package")
@@ -71,12 +51,3 @@ def lab(context):
     page = context.new_page()
     enter(page)
     return page
-
-
-@pytest.fixture(scope="package")
-def screenshots(request):
-    """The folder for pictures of the lessons, if it is asked for by --screenshots."""
-    folder = request.config.getoption("screenshots", None)
-    if folder:
-        folder.mkdir(parents=True, exist_ok=True)
-    return folder

@@ -14,9 +14,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from urllib.request import urlopen
 
+import pytest
+
 from .panel import Panel, panels
 
 ROOT = Path(__file__).resolve().parents[2]
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 LESSONS = [path.stem for path in sorted((ROOT / "notebooks").glob("*.ipynb"))]
 PATIENCE = 60  # s: for a server to come up, or a widget to answer, on a machine that is busy
 RUN_TIME = 300  # s: for all cells of a lesson
@@ -48,6 +51,27 @@ SETTINGS = {
     "labconfig/page_config.json": {"disabledExtensions": {"@jupyterlab/apputils-extension:announcements": True}},
     "lab/user-settings/@jupyterlab/notebook-extension/tracker.jupyterlab-settings": {"windowingMode": "none"},
 }
+
+
+@contextmanager
+def chromium():
+    """Run a browser without a window; without one the tests are skipped, or fail if PRIMKIT_BROWSER=required."""
+    program = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if program is None:
+        _absent(f"none of these is installed: {', '.join(BROWSERS)}")
+    try:
+        from playwright.sync_api import sync_playwright  # here, as all of tests/ must load without it
+    except ImportError:
+        _absent("playwright, which drives it, is not installed")
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+def _absent(why):
+    end = pytest.fail if os.environ.get("PRIMKIT_BROWSER") == "required" else pytest.skip
+    end(f"the lessons are tried in a browser: {why}")
 
 
 @contextmanager

@@ -124,7 +124,7 @@ class Panel:
 
 def panels(page, count: int, settle: Move) -> list[Panel]:
     """Return the page's panels, as soon as there are so many, or those that are there after a while."""
-    from playwright.sync_api import TimeoutError as NotShown  # here, as all of tests/ must load without playwright
+    from playwright.sync_api import TimeoutError as NotShown
 
     found = page.locator(OUTERMOST)
     with suppress(NotShown):  # the lesson's rules say how many are missing
