@@ -147,6 +147,8 @@ def _errors(m: Match) -> str:
     if m.dimension_error is not None:
         what = "radius" if isinstance(m.true, Circle) else "sides"
         lines.append(_in_mm(what, m.dimension_error, all(m.dimension_right)))
+    elif m.kind_right:
+        lines.append(f"{len(m.found.dimensions)} sides, not {len(m.true.dimensions)}: wrong")
     return "\n".join(lines)
 
 
