@@ -106,7 +106,7 @@ def _first_seen(drive: Drive) -> tuple[Floats, Ints]:
 
 def _draw_frame(ax: Axes, world: World, poses: Floats, points: Floats, new: NDArray[np.bool_]) -> None:
     """Draw the board, the shapes pale, the way, the points, and the robot at its end."""
-    draw_board(ax, world.size, points)
+    draw_board(ax, world.size, points, walls=world.walled)
     for shape in world.shapes:
         ax.add_patch(patch(shape, facecolor="#F2F2F2", edgecolor=PALE, linewidth=0.8, zorder=1))
     ax.plot(*poses[:, :2].T, zorder=2, **(WAY_LOOK | {"linewidth": marks(ax, 1.2)}))

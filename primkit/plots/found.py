@@ -80,8 +80,9 @@ def plot_found(
     check_type("world", world, World, or_none=True)
     check_type("report", report, Report, or_none=True)
     notes, truth = _notes(shapes, report), _truth(world, report)
-    ax, size = as_axes(ax), 1.0 if world is None else world.size
-    room = draw_board(ax, size, outlines(truth or shapes), legend=True)  # a found shape may be absurdly large
+    ax, (size, walls) = as_axes(ax), (1.0, False) if world is None else (world.size, world.walled)
+    # A found shape may be absurdly large.
+    room = draw_board(ax, size, outlines(truth or shapes), legend=True, walls=walls)
     draw_areas(ax, truth)
     if report is not None:
         draw_areas(ax, report.missed, facecolor="none", hatch="////")

@@ -41,7 +41,7 @@ def plot_tour(world: World, tour: Exploration, ax: Axes | None = None) -> Axes:
     check_type("tour", tour, Exploration)
     ax = as_axes(ax)
     points = tour.scans.points()
-    draw_board(ax, world.size, points, legend=True)
+    draw_board(ax, world.size, points, legend=True, walls=world.walled)
     draw_areas(ax, world.shapes)
     ax.plot(*points.T, "o", color=INK, markersize=marks(ax, 2), markeredgewidth=0, zorder=3)
     (way,) = ax.plot(*tour.path[:, :2].T, color=GREY, linewidth=marks(ax, 1.2), label="way", zorder=2)
@@ -78,7 +78,7 @@ def plot_change(before: World, after: World, points: ArrayLike, ax: Axes | None 
     for shape in after.shapes:
         off = np.minimum(off, np.abs(shape.signed_distance(points)))
     ghost = off > GHOST_GAP
-    draw_board(ax, after.size, points, legend=True)
+    draw_board(ax, after.size, points, legend=True, walls=after.walled)
     draw_areas(ax, after.shapes)
     dashed: dict[str, Any] = {"fill": False, "edgecolor": GREY, "linestyle": "--", "linewidth": marks(ax, 1.2)}
     for shape in before.shapes:
