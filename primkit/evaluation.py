@@ -55,7 +55,8 @@ class Match:
     center_error : array, shape (2,)
         found - true, x and y, metres.
     dimension_error : tuple of float, or None
-        found - true for each dimension, metres; None when the kinds differ: there is nothing to compare.
+        found - true for each dimension, metres; None when kinds or numbers of corners differ: there is nothing to
+        compare.
     center_right, dimension_right : tuple of bool
         Which of the values count as right.
     """
@@ -267,14 +268,14 @@ def match(
 def _compare_fairly(found: Shape, true: Shape, tolerance: float) -> Match:
     """Compare centroids and dimensions, both ways."""
     center = found.centroid - true.centroid
-    if found.kind != true.kind:
+    if found.kind != true.kind or len(found.dimensions) != len(true.dimensions):
         return Match(found, true, center, None, _within(center, tolerance), (False,) * _n_dimensions(true))
     dimension = _dimension_error(found, true)
     return Match(found, true, center, dimension, _within(center, tolerance), _within(dimension, tolerance))
 
 
 def _dimension_error(found: Shape, true: Shape) -> tuple[float, ...]:
-    """Return found - true for each dimension; the sides of a triangle or pentagon under the best cyclic shift."""
+    """Return found - true for each dimension; sides in order under the best cyclic shift."""
     ours, theirs = np.array(found.dimensions), np.array(true.dimensions)
     shifts = range(len(theirs)) if len(theirs) >= 3 else [0]
     errors = [np.roll(ours, shift) - theirs for shift in shifts]

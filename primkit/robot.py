@@ -1,8 +1,8 @@
 """Robot: where the e-puck stands when it scans.
 
 Third step of the story. Automatic movement: the robot is set down on way-points that cover the board and scans once
-at each; a way-point inside a shape is skipped. Manual movement: its two wheels turn as the user says, and it stops
-where it would touch something.
+at each; a way-point inside a shape, or too near to a wall for its body, is skipped. Manual movement: its two wheels
+turn as the user says, and it stops where it would touch something.
 
 In:  a ``World``, and for a drive the speeds of the wheels.
 Out: poses, shape (P, 3): x [m], y [m], heading [rad, counter-clockwise from the x axis], world frame.
@@ -74,7 +74,8 @@ def inside_shape(world: World, poses: NDArray[np.float64]) -> NDArray[np.bool_]:
 def teleport_poses(world: World) -> NDArray[np.float64]:
     """Return the way-points that the robot can be set down on, shape (P, 3).
 
-    Those inside a shape are left out; ``skipped_waypoints`` returns them.
+    Those inside a shape are left out, and those nearer to a wall than the robot's radius; ``skipped_waypoints``
+    returns them.
 
     Examples
     --------
@@ -83,16 +84,22 @@ def teleport_poses(world: World) -> NDArray[np.float64]:
     >>> len(teleport_poses(world)), skipped_waypoints(world).round(3).tolist()
     (76, [[0.1, 0.0, 0.0]])
     """
-    check_type(world, World, "world must be a World")
-    poses = waypoints(world.size)
-    return poses[~inside_shape(world, poses)]
+    return _on_board(world)[0]
 
 
 def skipped_waypoints(world: World) -> NDArray[np.float64]:
-    """Return the way-points that lie inside a shape, shape (Q, 3); the robot is not set down there."""
+    """Return the way-points inside a shape or too near to a wall, shape (Q, 3); the robot is not set down there."""
+    return _on_board(world)[1]
+
+
+def _on_board(world: World) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the way-points with room for the robot, and the others."""
     check_type(world, World, "world must be a World")
     poses = waypoints(world.size)
-    return poses[inside_shape(world, poses)]
+    barred = inside_shape(world, poses)
+    if world.walled:
+        barred |= world.size / 2 - np.abs(poses[:, :2]).max(axis=1) < BODY
+    return poses[~barred], poses[barred]
 
 
 def moved(poses: ArrayLike, wheels: ArrayLike, time: float | NDArray[np.float64]) -> NDArray[np.float64]:

@@ -24,7 +24,7 @@ def bits(world):
         else (s.kind, s.vertices.tobytes())
         for s in world.shapes
     ]
-    return shapes, struct.pack("d", world.size)
+    return shapes, struct.pack("d", world.size), world.walled
 
 
 def refusal(function, *args, error=ValueError, **kwargs):

@@ -181,7 +181,16 @@ def test_the_gate_belongs_to_it(distance, pairs):
 # --- dimensions ---------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("shape", [TRIANGLE, FIVE], ids=["triangle", "pentagon"])
+STAR = Polygon(
+    [
+        (0.1 * r * np.cos(0.2 * np.pi * i), 0.1 * r * np.sin(0.2 * np.pi * i))
+        for i, r in enumerate((1, 0.4, 0.9, 0.5, 1.1, 0.6, 1.2, 0.3, 0.8, 0.7))
+    ]
+)
+L = Polygon([(0, 0), (0.2, 0), (0.2, 0.05), (0.06, 0.05), (0.06, 0.15), (0, 0.15)])
+
+
+@pytest.mark.parametrize("shape", [TRIANGLE, FIVE, STAR, L], ids=["triangle", "pentagon", "star", "L"])
 def test_sides_are_compared_under_the_best_cyclic_shift(shape):
     """The found outline may start at any corner."""
     for shift in range(len(shape.vertices)):
@@ -199,6 +208,35 @@ def test_the_best_shift_is_the_best_of_all(seed, n):
     (m,) = evaluate([found], World([true])).matches
     sums = [sum(abs(found.sides[(i + shift) % n] - true.sides[i]) for i in range(n)) for shift in range(n)]
     assert sum(map(abs, m.dimension_error)) == pytest.approx(min(sums))
+
+
+def test_polygons_with_other_numbers_of_corners_share_their_kind_and_no_side():
+    """Found with a corner too many: the kind and the centre are right, no dimension is, and the report says so."""
+    hexagon, more = (
+        0.1 * np.column_stack([np.cos(t), np.sin(t)]) for t in (np.arange(6) * np.pi / 3, np.arange(7) * np.pi / 3.5)
+    )
+    report = evaluate([Polygon(more)], World([Polygon(hexagon)]))
+    (m,) = report.matches
+    assert (m.kind_right, m.center_right, m.dimension_error, m.dimension_right) == (
+        True,
+        (True, True),
+        None,
+        (False,) * 6,
+    )
+    assert (report.shape_accuracy, report.center_accuracy, report.dimension_accuracy) == (1, 1, 0)
+    assert report.rows() == [("polygon", "polygon", "+0.00, +0.00", "-", "wrong dimensions")]
+    assert evaluate([], World([Polygon(hexagon)])).rows()[0][0] == "polygon"
+
+
+@given(seed=seeds, shift=st.integers(0, 9))
+def test_any_polygon_against_itself_is_all_right(seed, shift):
+    """Turned, shifted and scaled together with the truth, from another first corner: no error."""
+    rng = np.random.default_rng(seed)
+    world = random_world(3, style="any", rng=rng)
+    found = [s if isinstance(s, Circle) else Polygon(np.roll(s.vertices, shift, axis=0)) for s in world.shapes]
+    report = evaluate(found[::-1], world, tolerance=1e-9)
+    assert report.weighted_accuracy == 1
+    assert evaluate([s.moved((0.5, 0.5)) for s in found], world).weighted_accuracy == 0
 
 
 def test_a_mirrored_triangle_is_another_triangle():

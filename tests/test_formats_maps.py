@@ -41,12 +41,12 @@ def polygon(*rings):
 # --- maps there and back ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("style", ["paper", "free"])
+@pytest.mark.parametrize("style", ["paper", "free", "any"])
 @settings(max_examples=40, deadline=None)
-@given(n=st.integers(0, 4), size=st.floats(1.0, 3.0), seed=st.integers(0, 2**32))
-def test_random_worlds_come_back_to_the_last_bit(tmp_path_factory, style, n, size, seed):
+@given(n=st.integers(0, 4), size=st.floats(1.0, 3.0), walls=st.booleans(), seed=st.integers(0, 2**32))
+def test_random_worlds_come_back_to_the_last_bit(tmp_path_factory, style, n, size, walls, seed):
     path = tmp_path_factory.mktemp("maps") / "map.geojson"
-    world = random_world(n, style=style, gap=0.01, size=size, rng=seed)
+    world = random_world(n, style=style, gap=0.01, size=size, walls=walls, rng=seed)
     save_world(world, path)
     assert bits(load_world(path)) == bits(world)
 
@@ -106,10 +106,24 @@ def test_a_board_without_shapes(tmp_path):
     assert load_world(tmp_path / "map.geojson") == World(size=0.5)
 
 
+def test_a_board_with_walls_says_so_beside_its_size(tmp_path):
+    save_world(World(size=0.5, walls=True), tmp_path / "map.geojson")
+    assert (tmp_path / "map.geojson").read_text() == (
+        '{\n  "type": "FeatureCollection",\n  "size": 0.5,\n  "walls": true,\n  "features": []\n}\n'
+    )
+    assert load_world(tmp_path / "map.geojson") == World(size=0.5, walls=True)
+
+
+@pytest.mark.parametrize(("walls", "shown"), [("yes", '"yes"'), (1, "1"), (None, "null"), ([], "a list of 0")])
+def test_walls_are_true_or_false(tmp_path, walls, shown):
+    path = written(tmp_path, collection(walls=walls))
+    assert refusal(load_world, path) == f"map.geojson: walls must be true or false, got {shown}"
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_the_file_is_valid_by_rfc_7946(tmp_path, seed):
     """An independent reader finds the same shapes; the rules it does not check are checked here."""
-    world = random_world(4, style="free", rng=seed)
+    world = random_world(4, style="any", rng=seed)
     save_world(world, tmp_path / "map.geojson")
     text = (tmp_path / "map.geojson").read_text()
     document = json.loads(text)

@@ -29,8 +29,9 @@ from primkit.raycast.fast import BEAMS_PER_BLOCK, PAIRS_PER_BLOCK
 from primkit.raycast.near import CELLS_FROM, Near
 from primkit.robot import inside_shape, teleport_poses
 from primkit.shapes import PRIMITIVES, Circle, Polygon
-from primkit.world import World, free_shape, random_world
+from primkit.world import SORTS, World, free_shape, random_world
 from tests.helpers import exactly
+from tests.test_shapes import anything
 
 NAN, INF = float("nan"), float("inf")
 
@@ -84,6 +85,11 @@ def geos(world, poses, angles, length=8.0):
             distance = shapely.distance(places[row], crossing)
             hit[row, beam] = np.where(np.isnan(distance), INF, distance)
         ranges = np.minimum(ranges, hit)
+    if len(world.walls):
+        board = shapely.box(*(2 * [-world.size / 2] + 2 * [world.size / 2]))
+        inside |= ~shapely.contains(board, places)
+        ways_out = shapely.intersection(beams, board.exterior)
+        ranges = np.fmin(ranges, shapely.distance(places[:, None], ways_out))
     ranges[inside] = INF
     return ranges, inside
 
@@ -93,6 +99,11 @@ def brute_force(world, pose, bearing):
     px, py = pose[:2]
     ux, uy = math.cos(pose[2] + bearing), math.sin(pose[2] + bearing)
     nearest = INF
+    if len(world.walls):
+        room = [world.size / 2 - p * math.copysign(1, u) for p, u in ((px, ux), (py, uy))]
+        if min(room) <= 0 or max(abs(px), abs(py)) >= world.size / 2:
+            return INF
+        nearest = min(free / abs(u) for free, u in zip(room, (ux, uy), strict=True) if u)
     for shape in world.shapes:
         if isinstance(shape, Circle):
             cx, cy = shape.center[0] - px, shape.center[1] - py
@@ -105,7 +116,8 @@ def brute_force(world, pose, bearing):
             continue
         corners = [(x - px, y - py) for x, y in shape.vertices.tolist()]
         sides = list(zip(corners, corners[1:] + corners[:1], strict=True))
-        if all(ax * by - ay * bx >= 0 for (ax, ay), (bx, by) in sides):
+        turned_by = sum(math.atan2(ax * by - ay * bx, ax * bx + ay * by) for (ax, ay), (bx, by) in sides)
+        if turned_by > math.pi:  # the outline winds round the robot
             return INF
         for (ax, ay), (bx, by) in sides:
             dx, dy = bx - ax, by - ay
@@ -119,15 +131,15 @@ def brute_force(world, pose, bearing):
     return nearest
 
 
-def check_against_geos(world, poses, angles, ranges):
+def check_against_geos(world, poses, angles, ranges, length=8.0):
     """Assert the rule of this module's first lines; return how many beams were on a knife's edge."""
     poses = np.reshape(poses, (-1, 3))
-    expected, inside = geos(world, poses, angles)
+    expected, inside = geos(world, poses, angles, length)
     doubtful = np.argwhere(~same(ranges, expected))
     for row, beam in doubtful:
         assert not inside[row], f"a pose inside a shape sees something: {poses[row]}"
         pose, angle, value = poses[row], angles[beam], ranges[row, beam]
-        around = [geos(world, pose, [angle + turn])[0][0, 0] for turn in (-KNIFE_EDGE, 0.0, KNIFE_EDGE)]
+        around = [geos(world, pose, [angle + turn], length)[0][0, 0] for turn in (-KNIFE_EDGE, 0.0, KNIFE_EDGE)]
         between = min(around) - TANGENT <= value <= max(around) + TANGENT
         steep = between and on_an_outline(world, pose, angle, value)
         assert same(value, around).any() or steep, f"{value} at {pose}, {angle} in {world}: GEOS has {around}"
@@ -144,6 +156,7 @@ def on_an_outline(world, pose, angle, value):
         else point.distance(shapely.LinearRing(s.vertices))
         for s in world.shapes
     ]
+    gaps += [point.distance(shapely.LineString(wall)) for wall in world.walls]
     return min(gaps) <= EXACT
 
 
@@ -154,6 +167,12 @@ def crowd(n, rng):
     """n shapes anywhere: they touch, overlap and hide each other."""
     centers = rng.uniform(-0.4, 0.4, (n, 2))
     return World([free_shape(PRIMITIVES[rng.integers(4)], center, rng) for center in centers])
+
+
+def odd_crowd(n, rng, **board):
+    """n polygons of all sorts anywhere, most of them not convex: they overlap, hide each other and hold the robot."""
+    centers = rng.uniform(-0.4, 0.4, (n, 2))
+    return World([free_shape(SORTS[rng.integers(len(SORTS))], center, rng) for center in centers], **board)
 
 
 def row_of_neighbours(rng):
@@ -174,12 +193,21 @@ def random_poses(n, rng):
 
 @pytest.fixture(scope="module")
 def scenes():
-    """64 worlds with 20 poses each, headings beyond one turn among them: 1,280 pairs, 128,000 beams."""
+    """88 worlds with 20 poses each, headings beyond one turn among them: 1,760 pairs, 176,000 beams."""
     rng = np.random.default_rng(20)
     worlds = [random_world(n, rng=seed) for n in (1, 2, 3, 4) for seed in range(5)]
     worlds += [random_world(n, style="free", gap=0.01, rng=n) for n in (1, 2, 3, 4, 5, 6, 7, 8) for _ in range(2)]
     worlds += [crowd(n, rng) for n in (2, 5, 8, 12) for _ in range(4)]
     worlds += [row_of_neighbours(rng) for _ in range(12)]
+    worlds += [odd_crowd(n, rng) for n in (1, 2, 4, 8) for _ in range(6)]
+    return [(world, random_poses(20, rng)) for world in worlds]
+
+
+@pytest.fixture(scope="module")
+def walled_scenes():
+    """8 boards with walls and polygons of all sorts, 20 poses each, some of them outside."""
+    rng = np.random.default_rng(21)
+    worlds = [odd_crowd(n, rng, size=size, walls=True) for n in (0, 1, 3, 6) for size in (0.7, 1.0)]
     return [(world, random_poses(20, rng)) for world in worlds]
 
 
@@ -285,34 +313,35 @@ def test_poses_failure(poses, sentence):
 # --- The ray caster against the oracles ---------------------------------------------------------------------
 
 
-def test_against_geos(scenes):
+def test_against_geos(scenes, walled_scenes):
     pairs = hits = doubtful = 0
-    for world, poses in scenes:
+    for world, poses in [*scenes, *walled_scenes]:
         ranges = cast_rays(world, poses, ANGLES)
         doubtful += check_against_geos(world, poses, ANGLES, ranges)
         pairs += len(poses)
         hits += np.isfinite(ranges).sum()
-    assert pairs >= 1000
-    assert hits > 15_000
+    assert pairs >= 1900
+    assert hits > 40_000
     assert doubtful <= 3, "a random beam is hardly ever on a knife's edge"
 
 
-def test_poses_inside_against_geos(scenes):
+def test_poses_inside_against_geos(scenes, walled_scenes):
     """A pose in a shape sees nothing, and Scans.inside says so."""
     n_inside = 0
-    for world, poses in scenes:
+    for world, poses in [*scenes, *walled_scenes]:
         scans = scan(world, poses, Lidar(range_min=0, range_max=3))
         inside = geos(world, poses, [0.0])[1]
         np.testing.assert_array_equal(scans.inside, inside)
-        np.testing.assert_array_equal(scans.inside, inside_shape(world, poses))
+        beyond = (np.abs(poses[:, :2]) >= world.size / 2).any(axis=1) & world.walled
+        np.testing.assert_array_equal(scans.inside, inside_shape(world, poses) | beyond)
         assert np.isinf(scans.ranges[inside]).all()
         n_inside += inside.sum()
     assert n_inside > 50
 
 
-def test_against_brute_force(scenes):
+def test_against_brute_force(scenes, walled_scenes):
     checked = 0
-    for world, poses in scenes[::2]:
+    for world, poses in [*scenes[::2], *walled_scenes[::2]]:
         ranges = cast_rays(world, poses[:6], ANGLES[::7])
         for pose, row in zip(poses, ranges, strict=False):
             for angle, value in zip(ANGLES[::7], row, strict=True):
@@ -321,9 +350,9 @@ def test_against_brute_force(scenes):
     assert checked > 2500
 
 
-def test_the_plain_form_sees_what_the_fast_form_sees(scenes):
+def test_the_plain_form_sees_what_the_fast_form_sees(scenes, walled_scenes):
     hits = 0
-    for world, poses in scenes:
+    for world, poses in [*scenes, *walled_scenes]:
         plain, fast = (cast(world, poses[:8], ANGLES[::9], 0.8) for cast in (cast_plainly, cast_rays))
         assert same(plain, fast).all()
         hits += np.isfinite(fast).sum()
@@ -534,6 +563,10 @@ SOLIDS = {
     "triangle": Polygon([(0, 0), (0.2, 0), (0.05, 0.15)]),
     "rectangle": box(-0.1, -0.05, 0.1, 0.05).moved(angle=0.3),
     "pentagon": Polygon([(0, -0.1), (0.09, -0.03), (0.05, 0.08), (-0.05, 0.08), (-0.091, -0.03)]),
+    "dart": Polygon([(0.1, -0.1), (0.2, 0.1), (0.1, 0.02), (0, 0.1)]),
+    "star": Polygon(
+        [(r * math.cos(0.2 * math.pi * i), r * math.sin(0.2 * math.pi * i)) for i, r in enumerate(5 * (0.1, 0.05))]
+    ),
 }
 
 
@@ -552,11 +585,11 @@ def test_a_pose_inside_sees_nothing_and_says_so(shape, lidar):
     assert not scan(world, np.column_stack([just_outside, np.zeros(50)]), lidar, rng=0).inside.any()
 
 
-@pytest.mark.parametrize("shape", SOLIDS.values(), ids=SOLIDS)
-def test_a_pose_on_an_outline(shape):
+@pytest.mark.parametrize("kind", ["circle", "triangle", "rectangle", "pentagon"])
+def test_a_pose_on_an_outline(kind):
     """Rounding decides whether it is inside, and sees nothing, or outside: then it reads 0 towards the shape and
     sees the others freely."""
-    others = World([Circle((0.45, 0), 0.1), box(-0.5, -0.1, -0.3, 0.1)])
+    shape, others = SOLIDS[kind], World([Circle((0.45, 0), 0.1), box(-0.5, -0.1, -0.3, 0.1)])
     places = shape.outline(41)
     for place, heading in zip(places, np.linspace(-7, 7, 41), strict=True):
         pose = np.array([*place, heading])
@@ -578,7 +611,10 @@ def test_a_robot_on_a_side_sees_no_phantom_beyond_it(off):
     """Whichever way a side runs, a beam along it ends on the outline or nowhere."""
     rng = np.random.default_rng(8)
     upright = box(0.1, -0.21, 0.3, -0.09)
-    for shape in [upright, *(free_shape(kind, rng.uniform(-0.3, 0.3, 2), rng) for kind in ("triangle", "pentagon"))]:
+    for shape in [
+        upright,
+        *(free_shape(kind, rng.uniform(-0.3, 0.3, 2), rng) for kind in ("triangle", "pentagon", *SORTS)),
+    ]:
         for corner, edge, normal in zip(shape.vertices, shape.edges, shape.normals, strict=True):
             along = np.arctan2(edge[1], edge[0])
             places = corner + rng.uniform(size=(50, 1)) * edge + off * normal
@@ -599,7 +635,7 @@ def test_a_pose_exactly_on_a_side_or_an_outline_is_inside():
     np.testing.assert_array_equal(inside_shape(world, scans.poses), True)
 
 
-@pytest.mark.parametrize("kind", ["triangle", "rectangle", "pentagon"])
+@pytest.mark.parametrize("kind", ["triangle", "rectangle", "pentagon", *SORTS])
 def test_a_pose_exactly_at_a_corner_is_inside(kind):
     """With any heading: a corner's distance to itself is 0, turned or not."""
     rng = np.random.default_rng(25)
@@ -1231,8 +1267,92 @@ def test_one_pose_alone_and_none():
     assert (len(none), none.ranges.shape, none.points().shape) == (0, (0, 100), (0, 2))
 
 
+@settings(max_examples=40, deadline=None)
+@given(st.lists(anything, min_size=1, max_size=4), seeds)
+def test_any_polygons_against_geos(polygons, seed):
+    """Stars, darts, Ls, combs and convex ones, of any size: the plain and the fast form see what GEOS sees."""
+    rng = np.random.default_rng(seed)
+    world, poses = World(polygons), np.column_stack([rng.uniform(-3, 3, (6, 2)), rng.uniform(-7, 7, 6)])
+    # Half the robots stand beside an outline, where a dent may hold them.
+    poses[:3, :2] = polygons[0].outline(3) + rng.normal(0, 0.05, (3, 2))
+    angles = np.sort(rng.uniform(0, 2 * np.pi, 30))
+    ranges = cast_rays(world, poses, angles)
+    check_against_geos(world, poses, angles, ranges, length=40.0)
+    assert same(cast_plainly(world, poses, angles), ranges).mean() > 0.99
+    np.testing.assert_array_equal(scan(world, poses).inside, geos(world, poses, [0.0])[1])
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    anything, st.tuples(st.floats(-3, 3), st.floats(-3, 3)), st.floats(-7, 7), st.floats(0.1, 10), st.booleans(), seeds
+)
+def test_any_polygon_moved_scaled_or_mirrored(polygon, offset, angle, scale, mirrored, seed):
+    """Robot and polygon together: the ranges grow with the scale, and a mirror turns their order round."""
+    rng = np.random.default_rng(seed)
+    poses = np.column_stack([rng.uniform(-3, 3, (10, 2)), rng.uniform(-7, 7, 10)])
+    away = np.abs(polygon.signed_distance(poses[:, :2]))
+    before = cast_rays(World([polygon]), poses, ANGLES)
+    flip = np.array([1.0, -1.0 if mirrored else 1.0])
+    world = moved_world(World([Polygon(polygon.vertices * flip * scale)]), offset, angle)
+    after = cast_rays(world, moved_poses(poses * [scale, scale * flip[1], flip[1]], offset, angle), ANGLES) / scale
+    after = np.roll(after[:, ::-1], 1, axis=1) if mirrored else after
+    alike = same(after, before, 1e-8) | np.isclose(after, before, rtol=1e-6)
+    assert (~alike[away > 1e-9]).sum() <= 2, "only a beam on a knife's edge may differ"
+
+
+def test_a_polygon_of_many_corners():
+    """Blocks are smaller then: as many sides as ever are worked on at a time."""
+    bearings = np.arange(1000) * (2 * np.pi / 1000)
+    gear = Polygon(
+        (0.1 + 0.01 * (np.arange(1000) % 2))[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)])
+    )
+    poses = random_poses(20, np.random.default_rng(40))
+    ranges = cast_rays(World([gear]), poses, ANGLES)
+    check_against_geos(World([gear]), poses[:8], ANGLES[::5], ranges[:8, ::5])
+    np.testing.assert_array_equal(cast_rays(World([gear]), poses[7], ANGLES)[0], ranges[7])
+
+
+# --- Walls --------------------------------------------------------------------------------------------------
+
+
+def test_walls_by_hand():
+    """They are seen from inside, up to the range; beyond them and on them, all is solid."""
+    world = World([Circle((0.3, 0.25), 0.05)], walls=True)
+    right_angles = [0.0, math.pi / 2, math.pi, 3 * math.pi / 2]
+    ranges = cast_rays(world, [(0.125, -0.125, 0), (0.3, 0.1, 0)], right_angles)
+    assert same(ranges, [[0.375, 0.625, 0.625, 0.375], [0.2, 0.1, 0.8, 0.6]]).all()
+    assert same(cast_rays(world, (0.25, -0.125, 0), right_angles, 0.3), [[0.25, INF, INF, INF]]).all()
+    outside = [(0.5, 0, 0), (0, -0.5, 0), (0.6, 0, math.pi), (-3, 4, 0), (0.5, 0.5, 1)]
+    for cast in (cast_rays, cast_plainly):
+        assert np.isinf(cast(world, outside, ANGLES)).all()
+    assert scan(world, outside).inside.all()
+    assert not scan(world, (0.499, 0.499, 0)).inside.any()
+
+
+def test_no_beam_slips_out_between_two_walls():
+    rng = np.random.default_rng(41)
+    for size in (0.3, 1.0, 7.0):
+        world = World(size=size, walls=True)
+        poses = np.column_stack([rng.uniform(-0.49, 0.49, (40, 2)) * size, rng.uniform(-7, 7, 40)])
+        poses[::4, :2] = np.sign(poses[::4, :2]) * size * 0.4999999
+        for pose in poses:
+            angles = np.unique(np.concatenate([ANGLES, aimed_at(world.walls[:, 0], pose)]))
+            assert np.isfinite(cast_rays(world, pose, angles)).all()
+
+
+def test_walls_do_not_slow_the_search_for_shapes(large_world):
+    """What is near does not count the walls, which are as long as the board."""
+    walled = World(large_world.shapes, large_world.size, walls=True)
+    poses = random_poses(60, np.random.default_rng(42)) * (5, 5, 1)
+    beside = ~scan(walled, poses).inside
+    expected = np.fmin(*(cast_rays(w, poses, ANGLES, 0.5) for w in (large_world, World(size=6.0, walls=True))))
+    np.testing.assert_array_equal(cast_rays(walled, poses, ANGLES, 0.5)[beside], expected[beside])
+    assert beside.any()
+    assert not beside.all()
+
+
 def test_the_board_has_no_walls():
-    """The edge of the board is invisible to the LiDAR."""
+    """The edge of the board is invisible to the LiDAR, unless told otherwise."""
     scans = scan(World(), teleport_poses(World()))
     assert scans.ranges.shape == (77, 100)
     assert np.isinf(scans.ranges).all()

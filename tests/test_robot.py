@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import shapely
 
+from primkit.lidar import scan
 from primkit.robot import inside_shape, skipped_waypoints, teleport_poses, waypoints
 from primkit.shapes import Circle, Polygon
 from primkit.world import World, random_world
@@ -105,6 +106,24 @@ def test_teleport_poses_against_shapely(style):
         places = shapely.points(waypoints()[:, :2])
         covered = np.any([shapely.covers(body, places) for body in bodies], axis=0)
         np.testing.assert_array_equal(waypoints()[covered], skipped)
+
+
+@pytest.mark.parametrize("size", [0.5, 1.0, 2.0, 3.7])
+def test_waypoints_keep_the_body_away_from_walls(size):
+    """0.037 m, the body's radius; without walls the robot may stand on the board's edge."""
+    walled = World([Circle((0.1, 0.0), 0.05)], size, walls=True)
+    poses, skipped = teleport_poses(walled), skipped_waypoints(walled)
+    assert np.abs(poses[:, :2]).max() <= size / 2 - 0.037
+    beside = size / 2 - np.abs(skipped[:, :2]).max(axis=1)
+    assert ((beside < 0.037) | (np.hypot(*(skipped[:, :2] - (0.1, 0)).T) <= 0.05)).all()
+    assert sorted(map(tuple, np.vstack([poses, skipped]))) == sorted(map(tuple, waypoints(size)))
+    assert not scan(walled, poses).inside.any()
+    assert len(skipped_waypoints(World(size=size))) == 0
+
+
+def test_on_the_papers_board_walls_cost_the_rows_and_the_column_at_the_edge():
+    """Of 7 x 11 way-points 6 x 9 are left: x = -0.5 and y = +-0.5 lie on the edge; the last column is 0.1 m inside."""
+    assert len(teleport_poses(World(walls=True))) == 6 * 9
 
 
 def test_the_board_of_the_world_counts():

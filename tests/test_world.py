@@ -1,6 +1,7 @@
 """Random boards: what stands on them, and how far apart, judged by shapely."""
 
 import dataclasses
+import pickle
 from itertools import combinations
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 import shapely
 
 from primkit.shapes import PRIMITIVES, Circle, Polygon
-from primkit.world import World, gap_between, random_world
+from primkit.world import SORTS, World, gap_between, random_world
 from tests.helpers import exactly
 
 NAN, INF = float("nan"), float("inf")
@@ -56,8 +57,25 @@ def test_worlds_are_equal_when_their_shapes_and_sizes_are():
     same = World([Circle((-0.0, 0), 0.1), Polygon(BOX.vertices)])
     assert same == World([DISC, BOX])
     assert hash(same) == hash(World([DISC, BOX]))
-    others = [World([BOX, DISC]), World([DISC]), World([DISC, BOX], 2), World()]
-    assert len({same, World([DISC, BOX]), *others}) == 5
+    others = [World([BOX, DISC]), World([DISC]), World([DISC, BOX], 2), World(), World([DISC, BOX], walls=True)]
+    assert len({same, World([DISC, BOX]), *others}) == 6
+
+
+def test_walls_stand_on_the_edge_of_the_board():
+    """Four, counter-clockwise from the lower left; none unless asked for. The world says so when it is printed."""
+    walls = World(size=3, walls=True).walls.tolist()
+    assert walls == [
+        [[-1.5, -1.5], [1.5, -1.5]],
+        [[1.5, -1.5], [1.5, 1.5]],
+        [[1.5, 1.5], [-1.5, 1.5]],
+        [[-1.5, 1.5], [-1.5, -1.5]],
+    ]
+    assert World().walls.shape == (0, 2, 2)
+    assert (World().walled, World(walls=True).walled, World(walls=np.True_).walled) == (False, True, True)
+    assert repr(World(walls=True)) == "World(shapes=(), size=1.0, walls=True)"
+    assert repr(World()) == "World(shapes=(), size=1.0)"
+    assert pickle.loads(pickle.dumps(World([BOX], 2, walls=True))) == World([BOX], 2, walls=True)
+    assert random_world(2, walls=True, rng=5) == World(random_world(2, rng=5).shapes, walls=True)
 
 
 WORLD_FAILURES = {
@@ -80,6 +98,13 @@ WORLD_FAILURES = {
     "size None": (([], None), "size must be a finite number > 0, got None"),
     "size is a truth value": (([], True), "size must be a finite number > 0, got True"),
 }
+
+
+@pytest.mark.parametrize("walls", [1, "yes", None, np.ones((4, 2, 2))])
+def test_world_walls_failure(walls):
+    for make in (World, lambda walls: random_world(0, walls=walls)):
+        with pytest.raises(ValueError, match=exactly(f"walls must be True or False, got {type(walls).__name__}")):
+            make(walls=walls)
 
 
 @pytest.mark.parametrize(("arguments", "sentence"), WORLD_FAILURES.values(), ids=WORLD_FAILURES)
@@ -227,6 +252,53 @@ def test_paper_pentagons(paper_worlds):
         np.testing.assert_allclose(corners, radius * PENTAGON, atol=1e-12)
 
 
+# --- Random worlds: any --------------------------------------------------------------------------------------
+
+N_CORNERS = {"quadrilateral": 4, "hexagon": 6, "star": 10, "L": 6, "T": 8, "U": 8, "arrow": 4}
+N_DENTS = {"quadrilateral": 0, "hexagon": 0, "star": 5, "L": 1, "T": 2, "U": 2, "arrow": 1}
+
+
+@pytest.fixture(scope="module")
+def any_worlds():
+    """240 boards in the style any, with one to six shapes."""
+    return [random_world(n, style="any", rng=1000 * n + seed) for n in range(1, 7) for seed in range(40)]
+
+
+def test_boards_of_any_shapes_keep_gaps_and_limits(any_worlds):
+    assert [len(world.shapes) for world in any_worlds] == np.repeat(range(1, 7), 40).tolist()
+    for world in any_worlds:
+        check_gaps_and_limits(world, 0.05, LIMIT)
+
+
+def test_any_shapes_are_drawn_evenly_from_eleven_sorts(any_worlds):
+    kinds = [shape.kind for world in any_worlds for shape in world.shapes]
+    n = len(kinds)
+    for kind, share in [*((kind, 1 / 11) for kind in PRIMITIVES), ("polygon", 7 / 11)]:
+        assert abs(kinds.count(kind) - share * n) < 4 * np.sqrt(n * share * (1 - share))
+
+
+@pytest.mark.parametrize("sort", SORTS)
+def test_sorts_are_what_they_are_called(sort):
+    """Corners that bend in and out as the name says, sides that a sensor can tell, thick enough to be seen through."""
+    bearings = []
+    for seed in range(60):
+        (shape,) = random_world(1, style="any", kinds=[sort], rng=seed).shapes
+        assert shape.kind == "polygon"
+        assert (len(shape.vertices), int((shape.turns < 0).sum())) == (N_CORNERS[sort], N_DENTS[sort])
+        assert shape.sides.min() > 0.035
+        assert np.abs(np.degrees(shape.turns)).min() >= 25
+        assert np.degrees(shape.turns).max() < 155
+        assert not shape.to_shapely().buffer(-0.012).is_empty
+        bearings.append(np.arctan2(*(shape.vertices[0] - shape.centroid)))
+    assert np.ptp(bearings) > 5, "turned by any angle"
+
+
+def test_a_polygon_is_a_sort_at_random():
+    polygons = [random_world(1, style="any", kinds=["polygon"], rng=seed).shapes[0] for seed in range(60)]
+    assert {shape.kind for shape in polygons} == {"polygon"}
+    assert {len(shape.vertices) for shape in polygons} == {4, 6, 8, 10}
+
+
 # --- Random worlds: free -------------------------------------------------------------------------------------
 
 
@@ -334,7 +406,7 @@ def test_quadrants_grow_with_the_board_and_shapes_do_not():
         assert max(shape.reach for shape in world.shapes) < 0.22
 
 
-@pytest.mark.parametrize("style", ["paper", "free"])
+@pytest.mark.parametrize("style", ["paper", "free", "any"])
 def test_same_seed_same_world(style):
     for seed in range(20):
         world = random_world(3, style=style, rng=seed)
@@ -349,7 +421,7 @@ def test_a_generator_goes_on_and_no_seed_means_any_world():
     assert random_world(2) != random_world(2)
 
 
-@pytest.mark.parametrize("style", ["paper", "free"])
+@pytest.mark.parametrize("style", ["paper", "free", "any"])
 def test_kinds_come_in_the_order_asked_for(style):
     for seed in range(20):
         kinds = list(np.random.default_rng(seed).choice(PRIMITIVES, 4).tolist())
@@ -357,7 +429,7 @@ def test_kinds_come_in_the_order_asked_for(style):
         assert [shape.kind for shape in world.shapes] == kinds
 
 
-@pytest.mark.parametrize("style", ["paper", "free"])
+@pytest.mark.parametrize("style", ["paper", "free", "any"])
 def test_no_shapes_asked_for(style):
     assert random_world(0, style=style, rng=0) == World()
     assert random_world(0, style=style, kinds=(), rng=0) == World()
@@ -380,6 +452,19 @@ RANDOM_WORLD_FAILURES = {
     "unknown kind": (
         *(2, {"kinds": ["circle", "square"]}),
         "a kind must be one of circle, triangle, rectangle, pentagon, got 'square'",
+    ),
+    "a sort in the style free": (
+        *(1, {"kinds": ["star"], "style": "free"}),
+        "a kind must be one of circle, triangle, rectangle, pentagon, got 'star'",
+    ),
+    "a polygon in the paper's style": (
+        *(1, {"kinds": ["polygon"]}),
+        "a kind must be one of circle, triangle, rectangle, pentagon, got 'polygon'",
+    ),
+    "unknown sort": (
+        *(1, {"kinds": ["blob"], "style": "any"}),
+        "a kind must be one of circle, triangle, rectangle, pentagon, quadrilateral, hexagon, star, L, T, U, arrow, "
+        "got 'blob'",
     ),
     "kind None": (1, {"kinds": [None]}, "a kind must be one of circle, triangle, rectangle, pentagon, got None"),
     "gap negative": (1, {"gap": -0.01}, "gap must be a finite number >= 0, got -0.01"),

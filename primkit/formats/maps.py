@@ -84,7 +84,8 @@ def save_world(world: World, path: StrPath, *, properties: Sequence[Mapping[str,
         with naming(f"{path.name}, feature {number}"):
             features.append(_feature_text(shape, extra))
     listed = "[\n" + ",\n".join(features) + "\n  ]" if features else "[]"
-    text = f'{{\n  "type": "FeatureCollection",\n  "size": {world.size!r},\n  "features": {listed}\n}}\n'
+    walls = '  "walls": true,\n' * world.walled
+    text = f'{{\n  "type": "FeatureCollection",\n  "size": {world.size!r},\n{walls}  "features": {listed}\n}}\n'
     data = text.encode()
     with naming(path.name):
         limit(len(data), MAP_LIMIT, "must be at most {} bytes")
@@ -104,7 +105,7 @@ def load_world(path: StrPath) -> World:
     World
         A Polygon becomes a ``Polygon`` (first corner first, turned counter-clockwise), a Point with the
         property ``radius`` a ``Circle``. The board's size is the member ``size`` beside the features, 1 m
-        when there is none.
+        when there is none; it has walls when the member ``walls`` is true.
 
     Raises
     ------
@@ -137,12 +138,15 @@ def load_world(path: StrPath) -> World:
         size = document.get("size", 1.0)
         if not isinstance(size, float):
             raise ValueError(f"size must be a finite number > 0, got {_shown(size)}")
+        walls = document.get("walls", False)
+        if not isinstance(walls, bool):
+            raise ValueError(f"walls must be true or false, got {_shown(walls)}")
     shapes = []
     for number, feature in enumerate(features, start=1):
         with naming(f"{path.name}, feature {number}"):
             shapes.append(_shape_of(feature))
     with naming(path.name):
-        return World(shapes, size)
+        return World(shapes, size, walls=walls)
 
 
 # From shapes to text.

@@ -124,7 +124,7 @@ def plot_tour(world: World, tour: Exploration, ax: Axes | None = None) -> Axes:
     check_type(tour, Exploration, "tour must be of type Exploration")
     ax = as_axes(ax)
     points = tour.scans.points()
-    draw_board(ax, world.size, points, legend=True)
+    draw_board(ax, world.size, points, legend=True, walls=world.walled)
     draw_areas(ax, world.shapes)
     ax.plot(*points.T, "o", color=INK, markersize=marks(ax, 2), markeredgewidth=0, zorder=3)
     (way,) = ax.plot(*tour.path[:, :2].T, color=GREY, linewidth=marks(ax, 1.2), label="way", zorder=2)
@@ -155,7 +155,7 @@ def plot_change(before: World, after: World, points: ArrayLike, ax: Axes | None 
     for shape in after.shapes:
         off = np.minimum(off, np.abs(shape.signed_distance(points)))
     ghost = off > GHOST_GAP
-    draw_board(ax, after.size, points, legend=True)
+    draw_board(ax, after.size, points, legend=True, walls=after.walled)
     draw_areas(ax, after.shapes)
     dashed: dict[str, Any] = {"fill": False, "edgecolor": GREY, "linestyle": "--", "linewidth": marks(ax, 1.2)}
     for shape in before.shapes:
@@ -179,7 +179,7 @@ def _first_seen(drive: Drive) -> tuple[Floats, Ints]:
 
 def _draw_frame(ax: Axes, world: World, poses: Floats, points: Floats, new: NDArray[np.bool_]) -> None:
     """Draw the board, the shapes pale, the way, the points, and the robot at its end."""
-    draw_board(ax, world.size, points)
+    draw_board(ax, world.size, points, walls=world.walled)
     for shape in world.shapes:
         ax.add_patch(patch(shape, facecolor="#F2F2F2", edgecolor=PALE, linewidth=0.8, zorder=1))
     ax.plot(*poses[:, :2].T, zorder=2, **(WAY_LOOK | {"linewidth": marks(ax, 1.2)}))

@@ -81,8 +81,9 @@ def plot_found(
     if report is not None:
         check_type(report, Report, "report must be of type Report")
     notes, truth = _notes(shapes, report), _truth(world, report)
-    ax, size = as_axes(ax), 1.0 if world is None else world.size
-    room = draw_board(ax, size, outlines(truth or shapes), legend=True)  # a found shape may be absurdly large
+    ax, (size, walls) = as_axes(ax), (1.0, False) if world is None else (world.size, world.walled)
+    # A found shape may be absurdly large.
+    room = draw_board(ax, size, outlines(truth or shapes), legend=True, walls=walls)
     draw_areas(ax, truth)
     if report is not None:
         draw_areas(ax, report.missed, facecolor="none", hatch="////")
@@ -148,6 +149,8 @@ def _errors(m: Match) -> str:
     if m.dimension_error is not None:
         what = "radius" if isinstance(m.true, Circle) else "sides"
         lines.append(_in_mm(what, m.dimension_error, all(m.dimension_right)))
+    elif m.kind_right:
+        lines.append(f"{len(m.found.dimensions)} sides, not {len(m.true.dimensions)}: wrong")
     return "\n".join(lines)
 
 

@@ -32,7 +32,7 @@ from ..shapes import Circle, Kind, Shape
 # Okabe and Ito's colours; their yellow is too faint on white. The first four have a contrast of 3 and more to white.
 BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
 ORANGE, SKY, BLACK = "#E69F00", "#56B4E9", "#000000"
-BROWN = "#7F5539"
+INDIGO = "#332288"  # of Paul Tol's colour-blind palette: Okabe and Ito have no fifth of that contrast but black
 INK, GREY, PALE = "#222222", "#6E6E6E", "#C8C8C8"
 
 KIND_COLORS: dict[Kind, str] = {
@@ -40,7 +40,7 @@ KIND_COLORS: dict[Kind, str] = {
     "triangle": VERMILION,
     "rectangle": GREEN,
     "pentagon": PURPLE,
-    "polygon": BROWN,
+    "polygon": INDIGO,
 }
 # The same, darker: letters need a contrast of 4.5 and more.
 KIND_INKS: dict[Kind, str] = {
@@ -76,13 +76,16 @@ def as_axes(ax: Axes | None) -> Axes:
     return plt.subplots(figsize=FIGURE_SIZE, layout="constrained")[1]
 
 
-def draw_board(ax: Axes, size: float, points: Floats | None = None, *, legend: bool = False) -> Floats:
-    """Draw the board's edge; set limits that hold it, the points, and a band above for a legend.
+def draw_board(
+    ax: Axes, size: float, points: Floats | None = None, *, legend: bool = False, walls: bool = False
+) -> Floats:
+    """Draw the board's edge, or its walls; set limits that hold it, the points, and a band above for a legend.
 
     Returns the lower left and the upper right corner of what holds the board and the points, shape (2, 2), metres.
     """
     half = size / 2
-    ax.add_patch(Rectangle((-half, -half), size, size, facecolor="white", edgecolor=INK, linewidth=1, zorder=0.5))
+    edge: dict[str, Any] = {"edgecolor": INK, "linewidth": 4 if walls else 1}
+    ax.add_patch(Rectangle((-half, -half), size, size, facecolor="white", zorder=0.5, **edge))
     inside = np.vstack([[(-half, -half), (half, half)], np.empty((0, 2)) if points is None else points])
     room = np.array([inside.min(axis=0), inside.max(axis=0)])
     (left, low), (right, high) = room + np.array([[-BOARD_MARGIN], [BOARD_MARGIN]]) * size

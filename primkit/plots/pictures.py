@@ -68,7 +68,7 @@ def plot_world(world: World, ax: Axes | None = None) -> Axes:
     """
     check_type(world, World, "world must be of type World")
     ax = as_axes(ax)
-    room = draw_board(ax, world.size, outlines(world.shapes))
+    room = draw_board(ax, world.size, outlines(world.shapes), walls=world.walled)
     draw_areas(ax, world.shapes, linewidth=1.5)
     for shape in world.shapes:
         draw_center(ax, shape)
@@ -122,7 +122,7 @@ def plot_scan(
     if as_count(index, "index", least=0) >= len(scans):
         raise ValueError(f"index must be below the number of scans, got {index} for {len(scans)}")
     ax, seen = as_axes(ax), scans[index : index + 1]
-    draw_board(ax, world.size, Circle(seen.poses[0, :2], lidar.range_max).outline(4), legend=True)
+    draw_board(ax, world.size, Circle(seen.poses[0, :2], lidar.range_max).outline(4), legend=True, walls=world.walled)
     draw_areas(ax, world.shapes, linewidth=1.5)
     draw_legend(ax, [*_draw_beams(ax, world, seen, lidar), *_draw_range(ax, seen.poses[0], lidar)])
     hits = f"{seen.hits.sum()} of {seen.hits.size} beams hit"

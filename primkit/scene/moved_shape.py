@@ -54,7 +54,7 @@ def with_one_moved(world: World, pose: Floats, rng: np.random.Generator) -> Worl
         new = world.shapes[chosen].moved(way, rng.uniform(-MOST_TURNED, MOST_TURNED))
         rest = [shape for number, shape in enumerate(world.shapes) if number != chosen]
         if _has_room(new, rest, world.size, pose):
-            return World([*rest[:chosen], new, *rest[chosen:]], size=world.size)
+            return World([*rest[:chosen], new, *rest[chosen:]], size=world.size, walls=world.walled)
     return None
 
 

@@ -90,6 +90,8 @@ def _name(one: Detection) -> str:
         return f"circle, radius {lengths[0]} mm"
     if one.kind == "rectangle":
         return f"rectangle, {' x '.join(lengths)} mm"
+    if one.kind == "polygon":
+        return f"polygon, {len(lengths)} sides"  # their lengths would fill the board
     return f"{one.kind}, sides {', '.join(lengths)} mm"
 
 

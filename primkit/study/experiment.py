@@ -153,11 +153,14 @@ def perform(experiment: Experiment) -> Row:
         fair=_score(fair),
         paper=_score(evaluate(run_.found, experiment.world, protocol="paper")),
         center_errors=tuple(e for m in fair.matches for e in m.center_error.tolist()),
-        dimension_errors=tuple(e for m in fair.matches for e in m.dimension_error or ()),
+        dimension_errors=tuple(
+            e for m in fair.matches if m.kind_right for e in m.dimension_error or (np.inf,) * len(m.dimension_right)
+        ),
         robot_time=run_.robot_time,
         computing_time=run_.computing_time,
         found_as=_found_as(fair, experiment.world),
         seen=() if experiment.drive is None else shares_seen(experiment.world, run_.scans, experiment.lidar),
+        dimension_counts=tuple(len(shape.dimensions) for shape in experiment.world.shapes),
     )
 
 
@@ -232,7 +235,8 @@ def program() -> str:
 def _as_text(world: World) -> str:
     """Return everything that a world is made of, to the last bit."""
     numbers = [[*s.center, s.radius] if isinstance(s, Circle) else s.vertices.ravel() for s in world.shapes]
-    return json.dumps([world.size, *([s.kind, *map(float, n)] for s, n in zip(world.shapes, numbers, strict=True))])
+    shapes = ([s.kind, *map(float, n)] for s, n in zip(world.shapes, numbers, strict=True))
+    return json.dumps([world.size, *shapes, *["walls"] * world.walled])
 
 
 def _hash(text: str) -> str:

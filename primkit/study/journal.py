@@ -92,6 +92,7 @@ def append(file: BinaryIO | None, row: Row, key: str) -> None:
 
 def _as_row(told: dict[str, Any]) -> Row:
     """Return a row from what JSON makes of it."""
-    told = {"found_as": (), "seen": (), **told}  # rows of earlier versions do not say it
-    lists = {name: tuple(told[name]) for name in ("kinds", "center_errors", "dimension_errors", "found_as", "seen")}
+    later = ("found_as", "seen", "dimension_counts")  # rows of earlier versions do not say it
+    lists = {name: tuple(told.get(name, ())) for name in later}
+    lists |= {name: tuple(told[name]) for name in ("kinds", "center_errors", "dimension_errors")}
     return replace(Row(**{**told, **lists}), fair=Score(**told["fair"]), paper=Score(**told["paper"]))

@@ -57,7 +57,8 @@ class Row:
     fair, paper : Score
         Two-sided within the tolerance, and scored as published; see ``evaluate``.
     center_errors, dimension_errors : tuple of float
-        found - true for each coordinate and dimension that can be compared, metres; paired fairly.
+        found - true for each coordinate and dimension that can be compared, metres; paired fairly. Infinite for
+        the sides of a polygon found with another number of them.
     robot_time : float
         Number of scans times the LiDAR's period, seconds.
     computing_time : float
@@ -66,6 +67,8 @@ class Row:
         For each of ``kinds``, the kind of the shape that was found in its place; None where it was missed.
     seen : tuple of float
         For each of ``kinds``, the share of its outline that the drive saw; empty with automatic movement.
+    dimension_counts : tuple of int
+        For each of ``kinds``, how many dimensions the true shape has; may be empty without a ``"polygon"``.
     """
 
     map: str
@@ -83,6 +86,11 @@ class Row:
     computing_time: float = field(compare=False)
     found_as: tuple[Kind | None, ...] = ()
     seen: tuple[float, ...] = ()
+    dimension_counts: tuple[int, ...] = ()
+
+    @property
+    def _counts(self) -> tuple[int, ...]:
+        return self.dimension_counts or tuple(N_DIMENSIONS[kind] for kind in self.kinds)
 
     @property
     def n_shapes(self) -> int:
@@ -92,7 +100,7 @@ class Row:
     @property
     def n_dimensions(self) -> int:
         """How many dimensions these have together."""
-        return sum(N_DIMENSIONS[kind] for kind in self.kinds)
+        return sum(self._counts)
 
     @property
     def n_false(self) -> int:
@@ -137,9 +145,9 @@ class Row:
             _weighted(
                 float(kind == found),
                 _n_right(center, self.tolerance) / 2,
-                _n_right(dimension, self.tolerance) / N_DIMENSIONS[kind],
+                _n_right(dimension, self.tolerance) / n,
             )
-            for kind, found, center, dimension in self._by_shape()
+            for n, (kind, found, center, dimension) in zip(self._counts, self._by_shape(), strict=True)
         ]
 
     def errors_by_shape(self) -> list[tuple[Errors, Errors] | None]:
@@ -152,9 +160,9 @@ class Row:
     def _by_shape(self) -> Iterator[tuple[Kind, Kind | None, Errors, Errors]]:
         """Yield for each true shape its kind, the kind found, and the errors of its centre and its dimensions."""
         centers, dimensions = iter(self.center_errors), iter(self.dimension_errors)
-        for kind, found in zip(self.kinds, self.found_as, strict=True):
+        for kind, found, n in zip(self.kinds, self.found_as, self._counts, strict=True):
             center = tuple(islice(centers, 2 * (found is not None)))
-            yield kind, found, center, tuple(islice(dimensions, N_DIMENSIONS[kind] * (kind == found)))
+            yield kind, found, center, tuple(islice(dimensions, n * (kind == found)))
 
 
 def _n_right(errors: Errors, tolerance: float) -> int:
