@@ -19,6 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from ..formats import StrPath, write_atomically
+from ..shapes import PRIMITIVES
 from ..table import Table, as_csv
 from .estimate import interval
 from .paper_table import Line, paper_table
