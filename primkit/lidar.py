@@ -44,7 +44,7 @@ from .arguments import (
 from .raycast import cast
 from .world import World
 
-BLOCK = 10_000  # scans that are worked on at a time: 8 MB of ranges
+SCANS_AT_ONCE = 10_000  # scans that are worked on at a time: 8 MB of ranges
 MOST_BEAMS = 1_000_000
 SCAN_SHAPES = {"poses": "(P, 3)", "angles": "(B,)", "ranges": "(P, B)", "inside": "(P,)"}
 # No scanner reaches a kilometre, no sensor's bearings go round twice, and no robot turns by 90 radians to the digit.
@@ -297,7 +297,7 @@ def scan_blocks(
     poses: ArrayLike,
     lidar: Lidar | None = None,
     *,
-    size: int = BLOCK,
+    size: int = SCANS_AT_ONCE,
     rng: int | np.random.Generator | None = None,
 ) -> Iterator[Scans]:
     """Scan the world once from each pose, and hand out the scans block by block.
@@ -337,7 +337,7 @@ def _scanned(
     """Check the other arguments and return the blocks."""
     lidar = Lidar() if lidar is None else lidar
     check_type(lidar, Lidar, "lidar must be a Lidar, such as Lidar()")
-    faults = _Faults(lidar, len(poses), min(size, BLOCK), rng)
+    faults = _Faults(lidar, len(poses), min(size, SCANS_AT_ONCE), rng)
     starts = range(0, max(1, len(poses)), size)
     return (_block(world, poses[start : start + size], lidar, faults) for start in starts)
 
@@ -345,8 +345,8 @@ def _scanned(
 def _block(world: World, poses: Floats, lidar: Lidar, faults: _Faults) -> Scans:
     angles = lidar.angles
     ranges, inside = cast(world, poses, angles, lidar.range_max, lidar.range_min)
-    for start in range(0, len(poses), BLOCK):
-        faults.disturb(ranges[start : start + BLOCK])
+    for start in range(0, len(poses), SCANS_AT_ONCE):
+        faults.disturb(ranges[start : start + SCANS_AT_ONCE])
     ranges[inside] = np.inf
     return _checked_before(poses, angles, ranges, inside)
 

@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .arguments import ROUNDING, Floats, as_count, as_points, as_positive, as_rng, as_share, check_type, limit
 
-BLOCK = 250_000  # residuals in one block of the matrix: 2 MB, about the size of a core's cache
+RESIDUALS_AT_ONCE = 250_000  # residuals in one block of the matrix: 2 MB, about the size of a core's cache
 MOST_TRIALS = 1_000_000  # all are drawn at once: 50 MB of samples of three points
 REFITS = 10  # refitting to the inliers settles within a few rounds; ten is a safe end
 
@@ -188,7 +188,7 @@ def _agree(residuals: Floats, threshold: float) -> NDArray[np.bool_]:
 
 def _merits(points: Floats, model: Model, candidates: Floats, threshold: float, score: str) -> Floats:
     """Return how good each candidate is, shape (T,); larger is better."""
-    step = max(1, BLOCK // len(points))
+    step = max(1, RESIDUALS_AT_ONCE // len(points))
     merits = []
     for start in range(0, len(candidates), step):
         residuals = model.residuals(candidates[start : start + step], points)

@@ -11,7 +11,7 @@ import pytest
 from scipy.stats import binomtest
 
 from primkit.__main__ import main
-from primkit.driving.wander import CLEARANCE, EDGE_MARGIN, PERIOD_WAY, TURN_CHOICES, wander
+from primkit.driving.wander import CLEARANCE, WAY_MARGIN, PERIOD_WAY, TURN_CHOICES, wander
 from primkit.evaluation import evaluate
 from primkit.grid import Grid
 from primkit.lidar import Lidar, scan
@@ -377,7 +377,7 @@ def test_a_drive_is_smooth_and_keeps_clear(seed):
     assert way.shape == (60, 3)
     assert np.array_equal(way, wander(world, 60, rng=seed))
     assert min(shape.signed_distance(way[:, :2]).min() for shape in world.shapes) >= CLEARANCE
-    assert np.abs(way[:, :2]).max() <= 0.5 - EDGE_MARGIN
+    assert np.abs(way[:, :2]).max() <= 0.5 - WAY_MARGIN
     steps = np.hypot(*np.diff(way[:, :2], axis=0).T)
     assert np.all((np.abs(steps - PERIOD_WAY) < 1e-12) | (steps == 0))
     assert np.abs(np.diff(way[:, 2])).max() <= TURN_CHOICES[-1] + 1e-12

@@ -21,7 +21,7 @@ from ..arguments import Floats, as_count, as_positive
 from ..world import World
 
 CLEARANCE = 0.04  # m: a little more than the robot's radius
-EDGE_MARGIN = 0.10  # m from the way to the board's edge: shapes are in the middle
+WAY_MARGIN = 0.10  # m from the way to the board's edge: shapes are in the middle
 PERIOD_WAY = 0.0128  # m: the e-puck's way in one period at full speed, 6.28 rad/s x 0.0205 m x 0.1 s
 TURN_CHOICES = np.radians(np.arange(-24, 25, 3))  # from scan to scan; the e-puck can turn much more
 TURN_MEMORY, TURN_STD = 0.8, np.radians(6)  # share of a turn that is kept in the next; deviation of what is added
@@ -73,7 +73,7 @@ def wander(
 
 
 def _start(world: World, clearance: float, rng: np.random.Generator) -> Floats:
-    spots = rng.uniform(-0.5, 0.5, (START_SPOTS, 2)) * (world.size - 2 * EDGE_MARGIN)
+    spots = rng.uniform(-0.5, 0.5, (START_SPOTS, 2)) * (world.size - 2 * WAY_MARGIN)
     free = np.flatnonzero(_clear(world, spots, clearance))
     if len(free) == 0:
         raise ValueError(f"clearance must leave room for a drive, got {clearance:g} m on a board of {world.size:g} m")
@@ -98,7 +98,7 @@ def _turn(world: World, place: Floats, heading: float, wish: float, clearance: f
 
 def _clear(world: World, spots: Floats, clearance: float) -> NDArray[np.bool_]:
     """Tell which spots are well on the board and that far from every outline, shape (N,)."""
-    clear: NDArray[np.bool_] = np.all(np.abs(spots) <= world.size / 2 - EDGE_MARGIN, axis=1)
+    clear: NDArray[np.bool_] = np.all(np.abs(spots) <= world.size / 2 - WAY_MARGIN, axis=1)
     for shape in world.shapes:
         clear &= shape.signed_distance(spots) >= clearance
     return clear

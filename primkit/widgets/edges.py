@@ -28,7 +28,7 @@ from .drawing import Frame, picture, square_frame
 from .slider import Explorer, Picture, Slider, explore
 
 RECTANGLE = Polygon([(-0.13, -0.09), (0.13, -0.09), (0.13, 0.09), (-0.13, 0.09)]).moved((0.02, 0.01), 0.3)
-MOST_TRIALS = 60
+MOST_TRIALS_SHOWN = 60
 LINE_SIGNS = ("dot", "cross", "diamond", "triangle", "square", "triangle down", "ring")  # of the lines' points, in turn
 LINE_REACH = 1.0  # m: half the length of a line that is drawn across the whole picture
 
@@ -38,7 +38,7 @@ def edges() -> Explorer:
     """Return the slider of lesson 04: the trials of RANSAC one after the other, and the threshold's band."""
     return explore(
         draw_edges,
-        Slider("trial", 1, MOST_TRIALS, 1, start=10),
+        Slider("trial", 1, MOST_TRIALS_SHOWN, 1, start=10),
         Slider("threshold", 0.5, 20.0, 0.5, start=3.0, unit="mm"),
         Slider("noise", 0.0, 6.0, 1.0, start=1.0, unit="mm"),
         Slider("seed", 0, 9, 1, start=0),
@@ -65,7 +65,7 @@ def seen_points(noise: float, seed: int) -> Floats:
 def draw_edges(trial: int, threshold: float, noise: float, seed: int) -> str:
     """Draw one trial and the best up to it: threshold and noise in mm."""
     points, reach = seen_points(noise, seed), threshold / 1000
-    samples = draw_samples(len(points), 2, MOST_TRIALS, np.random.default_rng(seed))[:trial]
+    samples = draw_samples(len(points), 2, MOST_TRIALS_SHOWN, np.random.default_rng(seed))[:trial]
     lines = LINE.from_samples(points[samples])
     near = LINE.residuals(lines, points) <= reach
     counts = np.count_nonzero(near, axis=1)
