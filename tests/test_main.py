@@ -60,7 +60,7 @@ HELP = {
         "primkit make-map --shapes 6 --style free --out room.geojson",
     ],
     "map": [
-        "usage: primkit map [-h] [--shapes N] [--seed S] [--style paper|free]",
+        "usage: primkit map [-h] [--shapes N] [--seed S] [--style paper|free|any]",
         "number of shapes on a board of 1 m x 1 m (default: 4)",
         "seed of all that is random, a whole number (default: 7)",
         "paper: upright, at most 4 shapes; free: at any angle (default: paper)",
@@ -331,8 +331,12 @@ def test_make_map(capsys):
         (["--kinds", "circle", "pentagon"], {"n": 2, "kinds": ("circle", "pentagon"), "rng": 7}),
         (["--shapes", "6", "--style", "free", "--gap", "30"], {"n": 6, "style": "free", "gap": 0.03, "rng": 7}),
         (["--shapes", "0"], {"n": 0, "rng": 7}),
+        (
+            ["--style", "any", "--walls", "--kinds", "L"],
+            {"n": 1, "style": "any", "kinds": ["L"], "walls": True, "rng": 7},
+        ),
     ],
-    ids=["defaults", "kinds tell the number", "free", "empty"],
+    ids=["defaults", "kinds tell the number", "free", "empty", "any, with walls"],
 )
 def test_make_map_draws_what_random_world_draws(words, world):
     assert main(["make-map", *words]) == 0
@@ -340,6 +344,13 @@ def test_make_map_draws_what_random_world_draws(words, world):
 
 
 # --- refusals -----------------------------------------------------------------------------------------------
+
+
+def test_a_map_with_walls_says_what_they_cost(capsys):
+    save_world(World([Circle((0.1, 0), 0.05)], walls=True), "b.geojson")
+    assert main(["map", "--map", "b.geojson"]) == 0
+    assert "Robot  77 way-points, 24 skipped inside a shape or beside a wall\n" in capsys.readouterr().out
+
 
 SEE = {name: f" (see primkit {name} --help)" for name in ("map", "study", "make-map")}
 REFUSED = {
@@ -361,7 +372,7 @@ REFUSED = {
     ),
     "style": (
         "map --style wild",
-        f"primkit map: argument --style: must be paper or free, got 'wild'{SEE['map']}",
+        f"primkit map: argument --style: must be paper or free or any, got 'wild'{SEE['map']}",
     ),
     "settings": (
         "map --settings both",

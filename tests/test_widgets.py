@@ -236,7 +236,7 @@ def test_a_tie_is_rounded_the_same_way_from_both_sides():
 
 def test_a_shape_is_drawn_in_its_kind_s_colour():
     frame = board_frame()
-    for shape in pk.random_world(4, kinds=list(KIND_COLORS), rng=0).shapes:
+    for shape in pk.random_world(5, style="any", kinds=list(KIND_COLORS), rng=2).shapes:
         assert KIND_COLORS[shape.kind] in frame.shape(shape)
 
 

@@ -57,7 +57,8 @@ def make_map_options(parser: Parser) -> None:
     """Add the options of ``primkit make-map``."""
     _board_options(parser)
     parser.option("--gap", "MM", millimetres, 50.0, "least distance between two shapes in mm")
-    kinds = "circle, triangle, rectangle or pentagon, for each shape"
+    kinds = "circle, triangle, rectangle or pentagon, for each shape; in the style any also polygon, star, L ..."
+    parser.add_argument("--walls", action="store_true", help="put walls around the board")
     parser.option("--kinds", "KIND", str, None, kinds, nargs="+", shown="drawn")
     parser.option("--out", "FILE", path, Path("map.geojson"), "the file; one that is there is replaced")
 
@@ -65,7 +66,8 @@ def make_map_options(parser: Parser) -> None:
 def _board_options(parser: Parser) -> None:
     parser.option("--shapes", "N", whole, None, "number of shapes on a board of 1 m x 1 m", shown=SHAPES)
     parser.option("--seed", "S", whole, 7, "seed of all that is random, a whole number")
-    parser.choice("--style", ("paper", "free"), "paper: upright, at most 4 shapes; free: at any angle", shown="paper")
+    styles = "paper: upright, at most 4 shapes; free: at any angle; any: other polygons too"
+    parser.choice("--style", ("paper", "free", "any"), styles, shown="paper")
 
 
 # --- primkit map --------------------------------------------------------------------------------------------
@@ -112,7 +114,8 @@ def _tell(world: World, lidar: Lidar, done: Run, method: str) -> None:
     n_poses = len(done.scans) + len(skipped)
     places = " ".join(f"({x:.2f}, {y:.2f})" for x, y, _ in skipped.round(2) + 0.0)  # + 0.0: not -0.00
     noise, number = 1000 * lidar.noise_std, "" if done.told is None else f", being told that there are {done.told}"
-    say(f"Robot  {n_poses} way-points, {len(skipped)} skipped inside a shape{f': {places} m' if places else ''}")
+    where = "inside a shape or beside a wall" if world.walled else f"inside a shape{f': {places} m' if places else ''}"
+    say(f"Robot  {n_poses} way-points, {len(skipped)} skipped {where}")
     say(f"LiDAR  {done.scans.hits.sum()} hits on {len(done.points)} cells of 1 mm; range noise {noise:g} mm")
     say(f"Found  {count(len(done.found), 'shape')} with the settings {method}{number}")
     robot = f"{done.robot_time:.1f} s (all way-points x {lidar.period:g} s)"
@@ -161,7 +164,9 @@ def make_map(arguments: argparse.Namespace) -> None:
     style: Style = arguments.style or "paper"
     if n is None:
         n = SHAPES if kinds is None else len(kinds)
-    world = random_world(n, style=style, kinds=kinds, gap=arguments.gap / 1000, rng=arguments.seed)
+    world = random_world(
+        n, style=style, kinds=kinds, gap=arguments.gap / 1000, walls=arguments.walls, rng=arguments.seed
+    )
     save_world(world, arguments.out)
     say(f"Board  {_census(world)} (random: seed {arguments.seed}, {style} style, gap {arguments.gap:g} mm)")
     say(f"Wrote  {arguments.out}")

@@ -80,16 +80,17 @@ def certainty(figure: Circle | Outlines, points: Floats, spread: float, *, squar
         return _of_circle(figure, points)
     seen = sides_seen(figure, points, spread)
     covariance = _of_sides(figure, points, spread, square)
-    center, dimension = _derivatives(figure)
-    measured = _measured(figure, seen, square)
+    rectangle = figure.polygon().kind == "rectangle"
+    center, dimension = _derivatives(figure, rectangle)
+    measured = _measured(figure, seen, square, rectangle)
     return Certainty(_std(center, covariance, np.full(2, seen.all())), _std(dimension, covariance, measured))
 
 
-def _measured(figure: Outlines, seen: NDArray[np.bool_], square: bool) -> NDArray[np.bool_]:
+def _measured(figure: Outlines, seen: NDArray[np.bool_], square: bool, rectangle: bool) -> NDArray[np.bool_]:
     """Tell which dimensions hang on seen sides only, shape (D,)."""
     if square:  # width and height each hang on the two sides across
         return np.array([seen[1] and seen[3], seen[0] and seen[2]])[_by_width(figure)]
-    if len(seen) == 4:  # without right angles, both hang on all
+    if rectangle:  # without right angles that were imposed, both hang on all
         return np.full(2, seen.all())
     return np.roll(seen, 1) & seen & np.roll(seen, -1)  # a side ends where its neighbours' lines cross it
 
@@ -169,14 +170,14 @@ def _cell_variance(angles: Floats, lengths: Floats, mass: Floats, noise: float) 
     return shaken * together + (1 - shaken) * CELL_STD**2 / mass
 
 
-def _derivatives(figure: Outlines) -> tuple[Floats, Floats]:
+def _derivatives(figure: Outlines, rectangle: bool) -> tuple[Floats, Floats]:
     """Return how centroid, shape (2, 2 K), and dimensions, shape (D, 2 K), change with angles and offsets."""
     k = figure.angles.shape[1]
     steps = STEP * np.vstack([np.eye(2 * k), -np.eye(2 * k)])
     moved = Outlines(figure.angles + steps[:, :k], figure.offsets + steps[:, k:])
     begin, end = moved.spans()
     sides = end - begin
-    if k == 4:
+    if rectangle:
         sides = ((sides[:, :2] + sides[:, 2:]) / 2)[:, _by_width(figure)]
     center = _centroids(moved.corners())
     there, back = slice(None, 2 * k), slice(2 * k, None)
