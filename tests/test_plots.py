@@ -20,10 +20,9 @@ from primkit.evaluation import evaluate
 from primkit.grid import Grid
 from primkit.lidar import Lidar, Scans, scan
 from primkit.measure import Detection
+from primkit.palette import CLUSTER_COLORS, CLUSTER_MARKERS, KIND_COLORS, KIND_INKS, KIND_MARKERS
 from primkit.pipeline import find_shapes
 from primkit.plots import (
-    KIND_COLORS,
-    KIND_MARKERS,
     labels,
     look,
     plot_clusters,
@@ -218,7 +217,7 @@ def lab(color, sight):
 
 
 @pytest.mark.parametrize("sight", SIGHT.values(), ids=SIGHT)
-@pytest.mark.parametrize("colors", [KIND_COLORS.values(), look.CLUSTER_COLORS], ids=["kinds", "clusters"])
+@pytest.mark.parametrize("colors", [KIND_COLORS.values(), CLUSTER_COLORS], ids=["kinds", "clusters"])
 def test_colors_can_be_told_apart(colors, sight):
     for a, b in combinations(colors, 2):
         assert np.linalg.norm(lab(a, np.array(sight)) - lab(b, np.array(sight))) > 15, (a, b)
@@ -226,7 +225,7 @@ def test_colors_can_be_told_apart(colors, sight):
 
 @pytest.mark.parametrize(
     ("colors", "least"),
-    [(KIND_COLORS.values(), 3.0), (look.KIND_INKS.values(), 4.5)],
+    [(KIND_COLORS.values(), 3.0), (KIND_INKS.values(), 4.5)],
     ids=["areas and lines", "letters"],
 )
 def test_kinds_stand_out_from_white(colors, least):
@@ -241,9 +240,9 @@ def test_each_kind_has_its_own_color_and_sign():
 
 
 def test_each_cluster_has_its_own_color_and_sign():
-    pairs = zip(look.CLUSTER_COLORS * 6, look.CLUSTER_MARKERS * 7, strict=True)
+    pairs = zip(CLUSTER_COLORS * 6, CLUSTER_MARKERS * 7, strict=True)
     assert len(set(pairs)) == 42
-    assert not set(look.CLUSTER_MARKERS) & set(KIND_MARKERS.values())
+    assert not set(CLUSTER_MARKERS) & set(KIND_MARKERS.values())
 
 
 # --- what is drawn ------------------------------------------------------------------------------------------
@@ -312,7 +311,7 @@ def test_clusters_are_drawn_with_color_sign_and_number_and_strays_as_crosses(ax)
     strays, *clusters = ax.lines
     assert (strays.get_marker(), strays.get_xydata().tolist()) == ("x", [[0.4, 0.4]])
     assert [line.get_marker() for line in clusters] == ["o", "D", "o", "v"]
-    assert [line.get_color() for line in clusters[::2]] == list(look.CLUSTER_COLORS[:2])
+    assert [line.get_color() for line in clusters[::2]] == list(CLUSTER_COLORS[:2])
     assert [text.get_text() for text in ax.texts] == ["0", "1"]
 
 

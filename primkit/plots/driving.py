@@ -25,25 +25,10 @@ from ..arguments import Floats, Ints, as_count, as_points, check_type
 from ..driving import Exploration
 from ..formats import Drive
 from ..grid import Grid
+from ..palette import BLUE, GREY, INK, ORANGE, PALE, VERMILION
+from ..table import count
 from ..world import World
-from .look import (
-    BLUE,
-    GREY,
-    INK,
-    ORANGE,
-    PALE,
-    ROBOT_SIGN,
-    VERMILION,
-    as_axes,
-    count,
-    draw_areas,
-    draw_board,
-    draw_legend,
-    draw_robot,
-    marks,
-    patch,
-    set_title,
-)
+from .look import ROBOT_SIGN, as_axes, draw_areas, draw_board, draw_legend, draw_robot, marks, patch, set_title
 from .story import Picture, freeze, plain
 
 FRAMES_IN_A_ROW = 3

@@ -22,24 +22,13 @@ from matplotlib.patches import Patch
 from ..arguments import Floats, check_type
 from ..evaluation import Match, Report
 from ..measure import Detection
+from ..palette import GREY, INK, KIND_COLORS
 from ..seen import is_seen
 from ..shapes import Circle, Polygon, Shape
+from ..table import count
 from ..world import World
 from .labels import write_labels
-from .look import (
-    GREY,
-    INK,
-    KIND_COLORS,
-    as_axes,
-    count,
-    draw_areas,
-    draw_board,
-    draw_center,
-    draw_legend,
-    marks,
-    outlines,
-    set_title,
-)
+from .look import as_axes, draw_areas, draw_board, draw_center, draw_legend, marks, outlines, set_title
 
 DASHES = (0, (3, 2))
 
@@ -162,7 +151,7 @@ def _in_mm(what: str, errors: Iterable[float], right: bool) -> str:
 def _verdict(n_found: int, report: Report | None) -> str:
     """Return the finding in a few words."""
     if report is None or not (report.matches or report.missed or report.false_alarms):
-        return f"{count(n_found, 'shape')} found"
+        return f"{count(n_found, 'shape').capitalize()} found"
     right, n = sum(m.all_right for m in report.matches), len(report.matches) + len(report.missed)
     if right == n and not report.false_alarms:
         return f"{count(n, 'shape')} found, {'all ' if n > 1 else ''}{_closeness(report)}"

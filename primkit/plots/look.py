@@ -1,10 +1,13 @@
-"""Look: the colours and signs, the board, and what all pictures share.
+"""Look: the board, and what all pictures share.
 
 In:  the axes, and what is to be drawn on them.
 Out: artists on these axes; sizes of letters that suit their width.
 
->>> KIND_COLORS["circle"], KIND_MARKERS["circle"]
-('#0072B2', 'o')
+>>> import matplotlib.figure
+>>> ax = matplotlib.figure.Figure().subplots()
+>>> set_title(ax, "Four shapes")
+>>> ax.get_title(loc="left")
+'Four shapes'
 """
 
 from __future__ import annotations
@@ -18,7 +21,7 @@ from typing import Any
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.colors import to_hex, to_rgb, to_rgba
+from matplotlib.colors import to_rgba
 from matplotlib.legend import Legend
 from matplotlib.patches import Circle as CirclePatch
 from matplotlib.patches import Patch, Rectangle
@@ -26,32 +29,9 @@ from matplotlib.patches import Polygon as PolygonPatch
 from matplotlib.ticker import MaxNLocator
 
 from ..arguments import Floats, check_type
+from ..palette import GREY, INK, KIND_COLORS, KIND_MARKERS
 from ..robot import BODY
-from ..shapes import Circle, Kind, Shape
-
-# Okabe and Ito's colours; their yellow is too faint on white. The first four have a contrast of 3 and more to white.
-BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
-ORANGE, SKY, BLACK = "#E69F00", "#56B4E9", "#000000"
-INDIGO = "#332288"  # of Paul Tol's colour-blind palette: Okabe and Ito have no fifth of that contrast but black
-INK, GREY, PALE = "#222222", "#6E6E6E", "#C8C8C8"
-
-KIND_COLORS: dict[Kind, str] = {
-    "circle": BLUE,
-    "triangle": VERMILION,
-    "rectangle": GREEN,
-    "pentagon": PURPLE,
-    "polygon": INDIGO,
-}
-# The same, darker: letters need a contrast of 4.5 and more.
-KIND_INKS: dict[Kind, str] = {
-    kind: to_hex((0.7 * red, 0.7 * green, 0.7 * blue))
-    for kind, (red, green, blue) in ((kind, to_rgb(color)) for kind, color in KIND_COLORS.items())
-}
-KIND_MARKERS: dict[Kind, str] = {"circle": "o", "triangle": "^", "rectangle": "s", "pentagon": "p", "polygon": "h"}
-# A cluster's kind is not known yet: the colours that no kind has come first, and no marker is a kind's. Seven colours
-# with six markers: the pairs repeat after 42 clusters.
-CLUSTER_COLORS = (ORANGE, SKY, BLACK, PURPLE, VERMILION, BLUE, GREEN)
-CLUSTER_MARKERS = ("D", "v", "P", "X", "<", "*")
+from ..shapes import Circle, Shape
 
 BOARD_MARGIN = 0.03  # of the board's size, left free around it
 LEGEND_BAND = 0.06  # of the board's size, left free above it for a legend
@@ -192,13 +172,3 @@ def draw_center(ax: Axes, shape: Shape) -> None:
     """Mark a shape's centre with its kind's sign."""
     color, marker = KIND_COLORS[shape.kind], KIND_MARKERS[shape.kind]
     ax.plot(*shape.centroid, marker, color=color, markersize=marks(ax, 6), markeredgewidth=0, zorder=4)
-
-
-def count(n: int, noun: str) -> str:
-    """Return a number with its noun.
-
-    >>> count(0, "shape"), count(1, "shape"), count(1234, "point")
-    ('No shapes', '1 shape', '1,234 points')
-    """
-    number = f"{n:,}" if n else "No"
-    return f"{number} {noun}" if n == 1 else f"{number} {noun}s"

@@ -22,20 +22,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arguments import Floats, as_count, as_points, as_positive, check_type
 from ..lidar import Lidar, Scans
+from ..palette import CLUSTER_COLORS, CLUSTER_MARKERS, GREY, INK, ORANGE, PALE
 from ..raycast import cast_rays
 from ..shapes import KINDS, Circle, Shape
+from ..table import count
 from ..world import World
 from .labels import write_labels
 from .look import (
-    CLUSTER_COLORS,
-    CLUSTER_MARKERS,
-    GREY,
-    INK,
-    ORANGE,
-    PALE,
     ROBOT_SIGN,
     as_axes,
-    count,
     draw_areas,
     draw_board,
     draw_center,
@@ -80,7 +75,7 @@ def plot_world(world: World, ax: Axes | None = None) -> Axes:
 def _census(shapes: Sequence[Shape]) -> str:
     kinds = [shape.kind for shape in shapes]
     counts = ", ".join(count(kinds.count(kind), kind) for kind in KINDS if kind in kinds)
-    return count(len(shapes), "shape") + (f": {counts}" if counts else "")
+    return count(len(shapes), "shape").capitalize() + (f": {counts}" if counts else "")
 
 
 # --- what the robot sees ------------------------------------------------------------------------------------
@@ -184,7 +179,7 @@ def plot_points(points: ArrayLike, ax: Axes | None = None, *, size: float = 1.0)
     ax = as_axes(ax)
     draw_board(ax, size, points)
     ax.plot(*points.T, "o", color=INK, markersize=marks(ax, 2.4), markeredgewidth=0)
-    set_title(ax, f"{count(len(points), 'point')} on the grid")
+    set_title(ax, f"{count(len(points), 'point').capitalize()} on the grid")
     return ax
 
 
@@ -220,7 +215,8 @@ def plot_clusters(points: ArrayLike, labels: ArrayLike, ax: Axes | None = None, 
     ax.plot(*strays.T, "x", color=GREY, markersize=marks(ax, 5), markeredgewidth=1)
     for number in numbers:
         _draw_cluster(ax, points[labels == number], number)
-    set_title(ax, count(len(numbers), "cluster") + (f", {count(len(strays), 'stray')}" if len(strays) else ""))
+    aside = f", {count(len(strays), 'stray')}" if len(strays) else ""
+    set_title(ax, count(len(numbers), "cluster").capitalize() + aside)
     return ax
 
 
