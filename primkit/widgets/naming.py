@@ -45,6 +45,7 @@ FIRST_BEARING = -2.2  # rad: of the first place, at the lower left
 REFIT_REACH = 0.1  # m: every point of the group counts for every candidate
 WALL_RADIUS = 0.25  # m: a larger circle is a wall
 TURNED_STARTS = 6  # first guesses of an outline, each turned a little further
+SAME_OUTLINE = 1e-6  # guesses whose squared distances differ by less than this share end in the same outline
 CORNER_CUTS = (0.002, 0.008)  # m: how much of a corner a first guess cuts off
 # A closed outline bends at each corner by this at least and at most [rad], and has no shorter side than this [m].
 CLOSED_LEAST_TURN, CLOSED_MOST_TURN, CLOSED_LEAST_SIDE = np.radians(2), np.radians(175), 0.003
@@ -182,7 +183,7 @@ def _closest(points: Floats, guess: Outlines, *, square: bool = False) -> Outlin
         return None
     found = found[closed]
     squares = (found.distances(points).max(axis=2) ** 2).sum(axis=1)
-    best = int(np.argmin(squares))
+    best = int(np.argmax(squares <= (1 + SAME_OUTLINE) * squares.min()))  # the first: no processor's rounding decides
     return found[best : best + 1]
 
 
