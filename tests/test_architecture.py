@@ -19,13 +19,14 @@ PACKAGE = ROOT / "primkit"
 # The story: a room (a module, or a folder of them) imports only rooms above it. The table of contents, __init__, loads
 # rooms on first use; who imports it from inside could reach everything, so only the command line may.
 # Beside the plan: ``palette`` holds the colours that the plots, the sliders and the scene's page have in common,
-# without matplotlib.
+# without matplotlib; ``show`` is how nouns print and show themselves;
+# ``found`` the list that find_shapes returns.
 ORDER = (
     *("arguments", "table"),
-    *("shapes", "world", "robot", "raycast", "lidar", "grid"),
+    *("shapes", "palette", "show", "world", "robot", "raycast", "lidar", "grid"),
     *("segmentation", "ransac", "lines", "circles", "seen"),
-    *("robust", "measure", "paper", "steps", "pipeline", "evaluation"),
-    *("formats", "driving", "study", "palette", "plots", "widgets", "scene", "checks", "course"),
+    *("robust", "measure", "found", "paper", "steps", "pipeline", "evaluation"),
+    *("formats", "driving", "study", "plots", "widgets", "scene", "checks", "course"),
     *("__init__", "commands", "__main__"),
 )
 
@@ -33,7 +34,7 @@ ORDER = (
 KNOWS_ONLY = {
     "raycast": ("arguments", "shapes", "world"),  # exact rays
     "robust": ("arguments", "shapes", "segmentation", "ransac", "lines", "circles", "seen"),  # no grid, LiDAR, pipeline
-    "formats": ("arguments", "shapes", "world", "robot", "lidar"),  # no estimator
+    "formats": ("arguments", "shapes", "show", "world", "robot", "lidar"),  # no estimator
 }
 # Rooms that others must not know, though these stand above them; and rooms that nobody knows but these.
 KNOWS_NO = {"widgets": ("plots",), "scene": ("plots", "widgets"), "checks": ("plots", "widgets", "scene")}

@@ -37,6 +37,7 @@ from ..palette import (
 from .accuracy import PANELS, plot_accuracy
 from .driving import plot_change, plot_drive, plot_tour
 from .found import plot_found
+from .look import draw_areas, draw_board
 from .pictures import plot_clusters, plot_points, plot_scan, plot_world
 from .story import plot_story, save_figure
 

@@ -9,7 +9,6 @@ Out: these axes, with a title that states what there is to see.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -24,7 +23,8 @@ from ..arguments import Floats, as_count, as_points, as_positive, check_type
 from ..lidar import Lidar, Scans
 from ..palette import CLUSTER_COLORS, CLUSTER_MARKERS, GREY, INK, ORANGE, PALE
 from ..raycast import cast_rays
-from ..shapes import KINDS, Circle, Shape
+from ..shapes import Circle
+from ..show import census
 from ..table import count
 from ..world import World
 from .labels import write_labels
@@ -67,15 +67,9 @@ def plot_world(world: World, ax: Axes | None = None) -> Axes:
     draw_areas(ax, world.shapes, linewidth=1.5)
     for shape in world.shapes:
         draw_center(ax, shape)
-    set_title(ax, _census(world.shapes))
+    set_title(ax, census(world.shapes).capitalize())
     write_labels(ax, [(shape.kind, shape) for shape in world.shapes], (), room)
     return ax
-
-
-def _census(shapes: Sequence[Shape]) -> str:
-    kinds = [shape.kind for shape in shapes]
-    counts = ", ".join(count(kinds.count(kind), kind) for kind in KINDS if kind in kinds)
-    return count(len(shapes), "shape").capitalize() + (f": {counts}" if counts else "")
 
 
 # --- what the robot sees ------------------------------------------------------------------------------------
