@@ -16,6 +16,7 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
+from primkit.driving import explore
 from primkit.evaluation import evaluate
 from primkit.grid import Grid
 from primkit.lidar import Lidar, Scans, scan
@@ -25,11 +26,13 @@ from primkit.pipeline import find_shapes
 from primkit.plots import (
     labels,
     look,
+    plot_change,
     plot_clusters,
     plot_found,
     plot_points,
     plot_scan,
     plot_story,
+    plot_tour,
     plot_world,
     save_figure,
 )
@@ -192,6 +195,54 @@ def test_title_keeps_a_number_and_its_unit_on_one_line(ax):
     lines = ax.get_title(loc="left").split("\n")
     assert len(lines) > 1
     assert "0.5 mm" in lines[-1]
+
+
+OWN_TITLE = {
+    "world": lambda **own: plot_world(DISC, **own),
+    "scan": lambda **own: plot_scan(DISC, scan(DISC, [(0, 0, 0)]), **own),
+    "points": lambda **own: plot_points(STRAY, **own),
+    "clusters": lambda **own: plot_clusters(STRAY, [0] * 40 + [-1], **own),
+    "found": lambda **own: plot_found(DISC.shapes, **own),
+    "tour": lambda **own: plot_tour(DISC, explore(DISC, rng=0, most_scans=2), **own),
+    "change": lambda **own: plot_change(DISC, World(), STRAY, **own),
+}
+OWN_COLOR = {name: OWN_TITLE[name] for name in ("world", "scan", "points", "found")}
+
+
+@pytest.mark.parametrize("plot", OWN_TITLE.values(), ids=OWN_TITLE)
+def test_a_title_of_one_s_own(plot, ax):
+    assert title(plot(ax=ax, title="What I see")) == "What I see"
+    assert title(plot(ax=ax, title="")) == ""
+
+
+@pytest.mark.parametrize("plot", OWN_COLOR.values(), ids=OWN_COLOR)
+def test_a_colour_of_one_s_own(plot, ax):
+    def colors(drawn):
+        lines = [to_hex(c) for line in drawn.lines for c in (line.get_color(), line.get_markeredgecolor())]
+        patches = [to_hex(patch.get_edgecolor()) for patch in drawn.patches]
+        return [*lines, *patches, *(to_hex(c) for some in drawn.collections for c in some.get_colors())]
+
+    usual = colors(plot(ax=ax))
+    ax.clear()
+    own = colors(plot(ax=ax, color="saddlebrown"))
+    changed = {(before, after) for before, after in zip(usual, own, strict=True) if before != after}
+    assert {after for _, after in changed} == {"#8b4513"}
+    assert len(changed) == 1  # of one colour before
+
+
+@pytest.mark.parametrize(
+    ("own", "message"),
+    [
+        ({"title": 3}, "title must be a text, got int"),
+        ({"color": "no colour"}, """color must be a colour, such as "tab:blue" or "#0072B2", got 'no colour'"""),
+    ],
+    ids=["title", "color"],
+)
+@pytest.mark.parametrize("plot", OWN_COLOR.values(), ids=OWN_COLOR)
+def test_a_look_of_one_s_own_failure(plot, own, message):
+    with pytest.raises(ValueError, match=exactly(message)):
+        plot(**own)
+    assert plt.get_fignums() == []
 
 
 # --- colours and signs --------------------------------------------------------------------------------------

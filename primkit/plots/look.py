@@ -21,14 +21,15 @@ from typing import Any
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.colors import to_rgba
+from matplotlib.colors import is_color_like, to_rgba
 from matplotlib.legend import Legend
 from matplotlib.patches import Circle as CirclePatch
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.patches import Polygon as PolygonPatch
 from matplotlib.ticker import MaxNLocator
+from matplotlib.typing import ColorType
 
-from ..arguments import Floats, check_type
+from ..arguments import Floats, check_type, short
 from ..palette import GREY, INK, KIND_COLORS, KIND_MARKERS
 from ..robot import BODY
 from ..shapes import Circle, Shape
@@ -95,8 +96,17 @@ def letters(ax: Axes, size: float) -> float:
     return max(marks(ax, size), LEAST_LETTERS)
 
 
-def set_title(ax: Axes, text: str) -> None:
-    """Set the title, on as many lines as the width of the axes asks for."""
+def check_look(title: str | None, color: ColorType | None = None) -> None:
+    """Refuse a title that is no text, and a colour that is none of matplotlib's."""
+    if title is not None:
+        check_type(title, str, "title must be a text")
+    if color is not None and not is_color_like(color):
+        raise ValueError(f'color must be a colour, such as "tab:blue" or "#0072B2", got {short(color)}')
+
+
+def set_title(ax: Axes, text: str, own: str | None = None) -> None:
+    """Set the title, the user's own if there is one, on as many lines as the width of the axes asks for."""
+    text = text if own is None else own
     title = ax.set_title("", loc="left", size=max(letters(ax, 11), 8), weight="bold")
     together = re.sub(r"(\d) (mm|m)\b", "\\1\u00a0\\2", text)  # a number and its unit stay on one line
     for columns in range(max(len(text), LEAST_COLUMNS), LEAST_COLUMNS - 1, -1):
@@ -152,10 +162,10 @@ def outlines(shapes: Iterable[Shape]) -> Floats:
     return np.vstack([np.empty((0, 2)), *(s.outline(40) if isinstance(s, Circle) else s.vertices for s in shapes)])
 
 
-def draw_areas(ax: Axes, shapes: Iterable[Shape], **look: Any) -> None:
-    """Fill shapes with their kinds' colours, lightly unless ``look`` says otherwise."""
+def draw_areas(ax: Axes, shapes: Iterable[Shape], own: ColorType | None = None, **look: Any) -> None:
+    """Fill shapes with their kinds' colours or the user's own, lightly unless ``look`` says otherwise."""
     for shape in shapes:
-        color = KIND_COLORS[shape.kind]
+        color = KIND_COLORS[shape.kind] if own is None else own
         usual = {"facecolor": to_rgba(color, 0.2), "edgecolor": color, "linewidth": 0, "zorder": 1}
         ax.add_patch(patch(shape, **(usual | look)))
 
@@ -168,7 +178,7 @@ def draw_robot(ax: Axes, pose: Floats, width: float = 1.0) -> None:
     ax.plot([x, x + nose[0]], [y, y + nose[1]], color=INK, linewidth=1.6 * width, solid_capstyle="butt", zorder=5)
 
 
-def draw_center(ax: Axes, shape: Shape) -> None:
+def draw_center(ax: Axes, shape: Shape, own: ColorType | None = None) -> None:
     """Mark a shape's centre with its kind's sign."""
-    color, marker = KIND_COLORS[shape.kind], KIND_MARKERS[shape.kind]
+    color, marker = KIND_COLORS[shape.kind] if own is None else own, KIND_MARKERS[shape.kind]
     ax.plot(*shape.centroid, marker, color=color, markersize=marks(ax, 6), markeredgewidth=0, zorder=4)
