@@ -159,7 +159,7 @@ class Report:
         """Return the rows as a table, and the scores below it."""
         return Table(REPORT_HEADER, self.rows(), notes=(self.scores(),))
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         return f"{replace(self.table(), notes=())}\n\n{self.scores()}"  # the scores stay on one line
 
     def _repr_html_(self) -> str:

@@ -24,6 +24,8 @@ from numpy.typing import ArrayLike
 
 from .arguments import Floats, Ints, as_points, as_positive
 from .lidar import Scans
+from .show import thumbnail
+from .table import count
 
 # 0.043 / 0.001 is 42.99999999999999 and must be cell 43: a point this close (in cells) below a border is on it.
 ON_BORDER = 1e-9
@@ -104,7 +106,10 @@ class Grid:
         return len(self._keys)
 
     def __repr__(self) -> str:
-        return f"Grid(resolution={self.resolution:g}): {len(self)} occupied cells"
+        return f"Grid: {count(len(self), 'occupied cell')} of {1000 * self.resolution:g} mm"
+
+    def _repr_html_(self) -> str:
+        return thumbnail(repr(self), dots=self.points())
 
 
 def as_keys(cells: Ints) -> Ints:

@@ -42,6 +42,8 @@ from .arguments import (
     limit,
 )
 from .raycast import cast
+from .show import thumbnail
+from .table import count
 from .world import World
 
 SCANS_AT_ONCE = 10_000  # scans that are worked on at a time: 8 MB of ranges
@@ -92,10 +94,8 @@ class Lidar:
 
     def __post_init__(self) -> None:
         limit(as_count(self.beams, "beams"), MOST_BEAMS, "beams must be at most {}")
-        for name in ("range_min", "noise_std"):
-            as_positive(getattr(self, name), name, zero=True)
-        for name in ("range_max", "period"):
-            as_positive(getattr(self, name), name)
+        for name in ("range_min", "noise_std", "range_max", "period"):
+            as_positive(getattr(self, name), name, zero=name in ("range_min", "noise_std"))
         for name in ("dropout", "spurious"):
             as_share(getattr(self, name), name)
         if self.range_min >= self.range_max:
@@ -177,18 +177,23 @@ class Scans:
     @property
     def hits(self) -> Bools:
         """Which beams met something, shape (P, B): those that read more than 0, and not infinity."""
-        hits: Bools = (self.ranges > 0) & (self.ranges < np.inf)
-        return hits
+        return np.logical_and(self.ranges > 0, self.ranges < np.inf)
 
     def points(self) -> Floats:
         """Return where the beams hit, shape (N, 2), metres, world frame; pose by pose, beam by beam."""
         pose, beam = np.nonzero(self.hits)
-        bearing = self.poses[pose, 2] + self.angles[beam]
-        reach = self.ranges[pose, beam]
+        bearing, reach = self.poses[pose, 2] + self.angles[beam], self.ranges[pose, beam]
         return self.poses[pose, :2] + reach[:, None] * np.column_stack([np.cos(bearing), np.sin(bearing)])
 
     def __len__(self) -> int:
         return len(self.poses)
+
+    def __repr__(self) -> str:
+        seen = f"{count(len(self), 'scan')} of {count(len(self.angles), 'beam')}"
+        return f"Scans: {seen}, {count(int(self.hits.sum()), 'hit')}"
+
+    def _repr_html_(self) -> str:
+        return thumbnail(repr(self), dots=self.points(), places=self.poses[:, :2])
 
     def __getitem__(self, which: slice | Sequence[int] | NDArray[np.integer]) -> Scans:
         """Return some of the scans: ``scans[5:6]`` is the sixth alone."""

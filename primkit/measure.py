@@ -25,6 +25,8 @@ from .robust.deviations import Certainty
 from .robust.scatter import LEAST_SPREAD
 from .seen import seen_shares
 from .shapes import Kind, Shape
+from .show import in_mm
+from .table import count
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +60,11 @@ class Detection:
     seen: tuple[float, ...] = ()
     sure: Certainty | Choice | None = field(default=None, repr=False)
     choice: Choice | None = field(default=None, repr=False)
+
+    def __repr__(self) -> str:
+        centre, dimensions = in_mm(self.shape, self.measured)
+        at = f"{self.kind} at ({centre}) mm, {dimensions} mm"
+        return f"Detection: {at}; {count(len(self.points), 'point')}, rms {1000 * self.rms:.2f} mm"
 
     @property
     def center_std(self) -> tuple[float, ...]:

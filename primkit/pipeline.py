@@ -1,7 +1,7 @@
 """Pipeline: the whole story, from points to shapes, on one screen.
 
 In:  the grid's points, shape (N, 2), metres.
-Out: a list of ``Detection``: each with its shape, its points, and how sure it is.
+Out: ``Found``, a list of ``Detection``: each with its shape, its points, and how sure it is.
 
 >>> from primkit.shapes import Circle
 >>> found = find_shapes(Circle((0.1, 0.0), 0.06).outline(150), rng=0)
@@ -17,7 +17,7 @@ any rotation, and lets the likelihood decide between circle and polygon.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import Literal
 
@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .arguments import Floats, as_count, as_points, as_positive, as_rng, as_share, check_type
+from .found import Found
 from .lines import LINE, find_lines
 from .measure import Detection, as_detection, detection
 from .paper import measure_as_published
@@ -32,6 +33,7 @@ from .robust.regroup import Group, explained, grown, regrouped
 from .robust.scatter import LEAST_SPREAD, SIGMAS, spread_across, spread_from_median, spread_of
 from .segmentation import Grouping, check_count, segment
 from .steps import Steps
+from .table import Table
 
 Memory = dict[tuple[bytes, float, int, bool, bool], Group]  # groups as they were measured last, by their points
 
@@ -93,6 +95,18 @@ class Settings:
         as_share(self.left_over, "left_over", "between 0 and 1")
         as_count(self.circle_trials, "circle_trials")
 
+    def __repr__(self) -> str:
+        for name, settings in (("ROBUST", ROBUST), ("PAPER", PAPER)):
+            if self == settings:
+                return name
+        own = [(name, value) for name, value in asdict(self).items() if value != getattr(ROBUST, name)]
+        return f"Settings({', '.join(f'{name}={value!r}' for name, value in own)})"
+
+    def _repr_html_(self) -> str:
+        rows = [(name, str(value), str(getattr(ROBUST, name))) for name, value in asdict(self).items()]
+        lengths = "noise_std and line_threshold in metres; None: found from the points."
+        return Table(("setting", "value", "ROBUST"), rows, repr(self), (lengths,))._repr_html_()
+
 
 ROBUST = Settings()
 PAPER = Settings(grouping="kmeans", method="published")
@@ -106,7 +120,7 @@ def find_shapes(
     steps: Steps | None = None,
     memory: Memory | None = None,
     rng: int | np.random.Generator | None = None,
-) -> list[Detection]:
+) -> Found:
     """Find the shapes whose outlines the points lie on.
 
     Parameters
@@ -130,8 +144,8 @@ def find_shapes(
 
     Returns
     -------
-    list of Detection
-        From left to right; empty when there is nothing.
+    Found
+        A list of ``Detection``, from left to right; empty when there is nothing.
 
     Raises
     ------
@@ -142,7 +156,7 @@ def find_shapes(
     Examples
     --------
     >>> find_shapes([])
-    []
+    no shapes found
     """
     check_type(settings, Settings, "settings must be ROBUST, PAPER or Settings of your own")
     steps = Steps() if steps is None else steps
@@ -151,7 +165,7 @@ def find_shapes(
     if n_shapes is not None:
         check_count(n_shapes, points)
     if len(points) == 0 or n_shapes == 0:
-        return []
+        return Found()
     points = points[np.lexsort((points[:, 1], points[:, 0]))]  # the order of seeing leaves no trace
     group_rng, measure_rng = as_rng(rng).spawn(2)
     labels = steps.labels(points, n_shapes)
@@ -163,7 +177,7 @@ def find_shapes(
         found = _as_published(together, settings, steps, measure_rng)
     else:
         found = _jointly(together, n_shapes, settings, steps, {} if memory is None else memory, measure_rng)
-    return sorted(found, key=lambda d: tuple(d.shape.centroid))
+    return Found(sorted(found, key=lambda d: tuple(d.shape.centroid)))
 
 
 def _jointly(

@@ -1,4 +1,4 @@
-r"""Table: whatever the kit tells in rows, as text, as HTML and as CSV.
+r"""Table: whatever the kit tells in rows, as text, as HTML and as CSV; and a number with its noun.
 
 In:  the names of the columns, and rows of texts; a row of a single text is the heading of those below it.
 Out: a ``Table``: ``print`` it, end a notebook's cell with it, or write its ``csv()``.
@@ -100,6 +100,15 @@ class Table:
 def _cell(tag: str, text: str, weight: str = "normal", **attributes: object) -> str:
     told = "".join(f' {name}="{value}"' for name, value in attributes.items())
     return f'<{tag}{told} style="text-align:left;font-weight:{weight}">{escape(text)}</{tag}>'
+
+
+def count(n: int, noun: str) -> str:
+    """Return a number with its noun.
+
+    >>> count(0, "shape"), count(1, "shape"), count(1234, "point")
+    ('no shapes', '1 shape', '1,234 points')
+    """
+    return f"{n:,} {noun}" if n == 1 else f"{n:,} {noun}s" if n else f"no {noun}s"
 
 
 def as_csv(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:

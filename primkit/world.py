@@ -25,8 +25,11 @@ from typing import Literal
 import numpy as np
 
 from .arguments import Floats, as_count, as_positive, as_rng, check_type, short
+from .palette import INK, KIND_COLORS, PALE
 from .shapes import PRIMITIVES, Circle, Kind, Polygon, Shape, turns_of
+from .show import census, thumbnail
 
+MOST_DRAWN = 1000  # shapes in the picture by which a world shows itself in a notebook
 # The paper's maps: one shape in each quadrant, near the quadrant's centre.
 QUADRANTS = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], dtype=float)
 QUADRANT_CENTER = 0.225  # of the board's size
@@ -101,7 +104,14 @@ class World:
         return np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)[: 4 * self.walled]
 
     def __repr__(self) -> str:
-        return f"World(shapes={self.shapes!r}, size={self.size!r}{', walls=True' * self.walled})"
+        return f"World: {self.size:g} m x {self.size:g} m{' with walls' * self.walled}, {census(self.shapes)}"
+
+    def _repr_html_(self) -> str:
+        board = (self.size / 2 * QUADRANTS, INK if self.walled else PALE)
+        drawn = self.shapes[:MOST_DRAWN]
+        text = repr(self) + (f"; the first {MOST_DRAWN} are drawn" if len(self.shapes) > MOST_DRAWN else "")
+        shapes = [(s.outline(40) if isinstance(s, Circle) else s.vertices, KIND_COLORS[s.kind]) for s in drawn]
+        return thumbnail(text, outlines=[board, *shapes])
 
     @cached_property
     def _hash(self) -> int:

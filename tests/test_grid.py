@@ -178,8 +178,8 @@ def test_an_empty_grid():
     grid = Grid()
     assert (len(grid), grid.cells.shape, grid.points().shape) == (0, (0, 2), (0, 2))
     assert grid.to_points([]).shape == grid.to_cells([]).shape == (0, 2)
-    assert (grid.resolution, repr(grid)) == (0.001, "Grid(resolution=0.001): 0 occupied cells")
-    assert repr(filled([(0, 0), (1, 1)], 0.25)) == "Grid(resolution=0.25): 2 occupied cells"
+    assert (grid.resolution, repr(grid)) == (0.001, "Grid: no occupied cells of 1 mm")
+    assert repr(filled([(0, 0), (1, 1)], 0.25)) == "Grid: 2 occupied cells of 250 mm"
 
 
 # --- What is refused ----------------------------------------------------------------------------------------

@@ -142,7 +142,7 @@ def check_against_geos(world, poses, angles, ranges, length=8.0):
         around = [geos(world, pose, [angle + turn], length)[0][0, 0] for turn in (-KNIFE_EDGE, 0.0, KNIFE_EDGE)]
         between = min(around) - TANGENT <= value <= max(around) + TANGENT
         steep = between and on_an_outline(world, pose, angle, value)
-        assert same(value, around).any() or steep, f"{value} at {pose}, {angle} in {world}: GEOS has {around}"
+        assert same(value, around).any() or steep, f"{value} at {pose}, {angle} in {world.shapes}: GEOS has {around}"
     return len(doubtful)
 
 

@@ -187,7 +187,7 @@ def test_map_where_nothing_is_to_be_found(words, capsys):
     far = Polygon([(0.9, 0.9), (1.0, 0.9), (1.0, 1.0)])
     save_world(World([far]), "wall.geojson")
     assert main(["map", *words]) == 0
-    assert "Found  0 shapes" in capsys.readouterr().out
+    assert "Found  no shapes" in capsys.readouterr().out
     assert load_world("out/found.geojson").shapes == ()
 
 

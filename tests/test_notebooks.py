@@ -10,8 +10,11 @@ import json
 import re
 from itertools import pairwise
 from pathlib import Path
+from types import ModuleType
 
 import pytest
+
+import primkit as pk
 
 ROOT = Path(__file__).resolve().parent.parent
 LESSONS = {path.stem: path for path in sorted((ROOT / "notebooks").glob("*.ipynb"))}
@@ -376,3 +379,122 @@ def test_a_breach_is_reported(rule, breaks):
     assert rule(broken) == []
     breaks(broken)
     assert len(rule(broken)) >= 1
+
+
+# --- what any notebook takes of the library -----------------------------------------------------------------------
+
+NOTEBOOKS = sorted(path for path in (ROOT / "notebooks").rglob("*.ipynb") if ".ipynb_checkpoints" not in path.parts)
+# A hidden test calls the teacher's own functions, which lie beside the problem sets and are no part of the library.
+HIDDEN, TEACHERS_OWN = "### BEGIN HIDDEN TESTS", "grader"
+
+
+def deep_names(notebook):
+    """Report what is not ``pk.name`` or ``pk.wing.name``, and whatever could lead to more."""
+    return [f"{breach} in: {source(cell)}" for cell in code_cells(notebook) for breach in deep_names_of(source(cell))]
+
+
+def deep_names_of(code):
+    tree = ast.parse(code)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            renamed = {(alias.name, alias.asname) for alias in node.names} - {("primkit", "pk")}
+            yield from (f"imports {name}" for name, _ in renamed if is_ours(name, code))
+        elif isinstance(node, ast.ImportFrom) and is_ours(node.module or "", code):
+            yield f"imports from {node.module}"
+        elif isinstance(node, ast.Constant) and re.fullmatch(r"primkit(\.\w+)+", str(node.value)):
+            yield f"names a module as text: {node.value}"
+        elif isinstance(node, ast.Attribute) and re.match("_(?!_)", node.attr):
+            yield f"takes a name with an underscore: {node.attr}"
+    for root, *names in dotted_names(tree):
+        if root in ("__import__", "pk") and not is_public(names):
+            yield f"takes {'.'.join([root, *names])}"
+
+
+def is_ours(module, code):
+    first = module.split(".")[0]
+    return first in ("primkit", "importlib") or (first == TEACHERS_OWN and HIDDEN not in code)
+
+
+def dotted_names(tree):
+    """Yield each name with all that is taken of it, as far as the dots go: ["pk", "plots", "BLUE"]."""
+    within = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.Name, ast.Attribute)) and id(node) not in within:
+            names = []
+            while isinstance(node, ast.Attribute):
+                names.insert(0, node.attr)
+                node = node.value
+            if isinstance(node, ast.Name):
+                yield [node.id, *names]
+
+
+def is_public(names):
+    """Tell whether pk with these names behind it is a name of the story, or a name at the face of a wing."""
+    if not names or names[0] not in {*dir(pk), "__version__"}:
+        return False  # pk on its own could be handed on, or set anew
+    wing = getattr(pk, names[0])
+    if not isinstance(wing, ModuleType):
+        return True
+    return len(names) > 1 and names[1] in wing.__all__ and not isinstance(getattr(wing, names[1]), ModuleType)
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_notebook_takes_no_deep_name(path):
+    assert deep_names(json.loads(path.read_text(encoding="utf-8"))) == []
+
+
+def test_all_notebooks_are_looked_at():
+    assert {*LESSONS, "ps1", "ps2", "ps3", "ps4", "09_your_own_map", "slides"} == {path.stem for path in NOTEBOOKS}
+
+
+def notebook_of(code):
+    return {"cells": [{"cell_type": "code", "source": [code]}]}
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "from primkit.plots.look import BLUE",
+        "from primkit import find_shapes",
+        "import primkit.plots",
+        "import primkit",
+        "import primkit as p",
+        "import primkit.plots as pk",
+        "def f():\n    from primkit import plots",
+        "import importlib\nimportlib.import_module('x')",
+        "from importlib import import_module",
+        "__import__('primkit')",
+        "import sys\nsys.modules['primkit.plots.look']",
+        "pk.plots.look.BLUE",
+        "pk.plots.look",
+        "pk.lines.LINE",
+        "pk.nothing",
+        "pk.widgets.nothing()",
+        "plots = pk.plots",
+        "getattr(pk, 'lines')",
+        "pk.widgets.rays()._redraw()",
+        "scene._state",
+        "pk._lazy",
+        "await pk.plots.look.draw()",
+        "from grader import rays_and_grid",
+    ],
+)
+def test_a_deep_name_is_reported(code):
+    assert len(deep_names(notebook_of(code))) >= 1
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import primkit as pk\nprint(pk.__version__)",
+        "pk.find_shapes(grid, settings=pk.PAPER)",
+        "pk.Grid().points().T",
+        "pk.plots.KIND_COLORS['circle']",
+        "pk.widgets.edges().diagram()",
+        "pk.checks.meet.yours_or_ours(meet)",
+        "for _ in range(3):\n    grid.primkit()",
+        "### BEGIN HIDDEN TESTS\nfrom grader import rays_and_grid\n### END HIDDEN TESTS",
+    ],
+)
+def test_a_public_name_is_not_reported(code):
+    assert deep_names(notebook_of(code)) == []

@@ -50,17 +50,18 @@ def test_library_has_the_project_s_version() -> None:
     assert f'__version__ = "{PROJECT["version"]}"' in contents
 
 
-def test_a_wheel_has_the_scene_s_front_end() -> None:
+def test_a_wheel_has_the_table_of_contents_and_the_scene_s_front_end() -> None:
     """What the modules read is installed with them: hatch takes all in the folder that git does not ignore."""
     tool = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]
     wheel = tool["hatch"]["build"]["targets"]["wheel"]
     assert "primkit" in wheel["only-include"]
     assert "exclude" not in wheel
     front_end = [f"primkit/scene/{name}" for name in ("board.js", "hand.js", "scene.js", "replay.js", "scene.css")]
-    assert all((ROOT / name).is_file() for name in front_end)
+    read = [*front_end, "primkit/__init__.pyi"]
+    assert all((ROOT / name).is_file() for name in read)
     ignored = (ROOT / ".gitignore").read_text(encoding="utf-8").splitlines()
     rules = [line.strip("/") for line in ignored if line and not line.startswith("#")]
-    assert [(name, rule) for name in front_end for rule in rules if PurePosixPath(name).match(rule)] == []
+    assert [(name, rule) for name in read for rule in rules if PurePosixPath(name).match(rule)] == []
 
 
 @pytest.fixture(scope="module")

@@ -16,21 +16,23 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
+from primkit.driving import explore
 from primkit.evaluation import evaluate
 from primkit.grid import Grid
 from primkit.lidar import Lidar, Scans, scan
 from primkit.measure import Detection
+from primkit.palette import CLUSTER_COLORS, CLUSTER_MARKERS, KIND_COLORS, KIND_INKS, KIND_MARKERS
 from primkit.pipeline import find_shapes
 from primkit.plots import (
-    KIND_COLORS,
-    KIND_MARKERS,
     labels,
     look,
+    plot_change,
     plot_clusters,
     plot_found,
     plot_points,
     plot_scan,
     plot_story,
+    plot_tour,
     plot_world,
     save_figure,
 )
@@ -195,6 +197,54 @@ def test_title_keeps_a_number_and_its_unit_on_one_line(ax):
     assert "0.5 mm" in lines[-1]
 
 
+OWN_TITLE = {
+    "world": lambda **own: plot_world(DISC, **own),
+    "scan": lambda **own: plot_scan(DISC, scan(DISC, [(0, 0, 0)]), **own),
+    "points": lambda **own: plot_points(STRAY, **own),
+    "clusters": lambda **own: plot_clusters(STRAY, [0] * 40 + [-1], **own),
+    "found": lambda **own: plot_found(DISC.shapes, **own),
+    "tour": lambda **own: plot_tour(DISC, explore(DISC, rng=0, most_scans=2), **own),
+    "change": lambda **own: plot_change(DISC, World(), STRAY, **own),
+}
+OWN_COLOR = {name: OWN_TITLE[name] for name in ("world", "scan", "points", "found")}
+
+
+@pytest.mark.parametrize("plot", OWN_TITLE.values(), ids=OWN_TITLE)
+def test_a_title_of_one_s_own(plot, ax):
+    assert title(plot(ax=ax, title="What I see")) == "What I see"
+    assert title(plot(ax=ax, title="")) == ""
+
+
+@pytest.mark.parametrize("plot", OWN_COLOR.values(), ids=OWN_COLOR)
+def test_a_colour_of_one_s_own(plot, ax):
+    def colors(drawn):
+        lines = [to_hex(c) for line in drawn.lines for c in (line.get_color(), line.get_markeredgecolor())]
+        patches = [to_hex(patch.get_edgecolor()) for patch in drawn.patches]
+        return [*lines, *patches, *(to_hex(c) for some in drawn.collections for c in some.get_colors())]
+
+    usual = colors(plot(ax=ax))
+    ax.clear()
+    own = colors(plot(ax=ax, color="saddlebrown"))
+    changed = {(before, after) for before, after in zip(usual, own, strict=True) if before != after}
+    assert {after for _, after in changed} == {"#8b4513"}
+    assert len(changed) == 1  # of one colour before
+
+
+@pytest.mark.parametrize(
+    ("own", "message"),
+    [
+        ({"title": 3}, "title must be a text, got int"),
+        ({"color": "no colour"}, """color must be a colour, such as "tab:blue" or "#0072B2", got 'no colour'"""),
+    ],
+    ids=["title", "color"],
+)
+@pytest.mark.parametrize("plot", OWN_COLOR.values(), ids=OWN_COLOR)
+def test_a_look_of_one_s_own_failure(plot, own, message):
+    with pytest.raises(ValueError, match=exactly(message)):
+        plot(**own)
+    assert plt.get_fignums() == []
+
+
 # --- colours and signs --------------------------------------------------------------------------------------
 
 # How a dichromat sees linear RGB: Machado, Oliveira and Fernandes (2009), severity 1.
@@ -218,7 +268,7 @@ def lab(color, sight):
 
 
 @pytest.mark.parametrize("sight", SIGHT.values(), ids=SIGHT)
-@pytest.mark.parametrize("colors", [KIND_COLORS.values(), look.CLUSTER_COLORS], ids=["kinds", "clusters"])
+@pytest.mark.parametrize("colors", [KIND_COLORS.values(), CLUSTER_COLORS], ids=["kinds", "clusters"])
 def test_colors_can_be_told_apart(colors, sight):
     for a, b in combinations(colors, 2):
         assert np.linalg.norm(lab(a, np.array(sight)) - lab(b, np.array(sight))) > 15, (a, b)
@@ -226,7 +276,7 @@ def test_colors_can_be_told_apart(colors, sight):
 
 @pytest.mark.parametrize(
     ("colors", "least"),
-    [(KIND_COLORS.values(), 3.0), (look.KIND_INKS.values(), 4.5)],
+    [(KIND_COLORS.values(), 3.0), (KIND_INKS.values(), 4.5)],
     ids=["areas and lines", "letters"],
 )
 def test_kinds_stand_out_from_white(colors, least):
@@ -241,9 +291,9 @@ def test_each_kind_has_its_own_color_and_sign():
 
 
 def test_each_cluster_has_its_own_color_and_sign():
-    pairs = zip(look.CLUSTER_COLORS * 6, look.CLUSTER_MARKERS * 7, strict=True)
+    pairs = zip(CLUSTER_COLORS * 6, CLUSTER_MARKERS * 7, strict=True)
     assert len(set(pairs)) == 42
-    assert not set(look.CLUSTER_MARKERS) & set(KIND_MARKERS.values())
+    assert not set(CLUSTER_MARKERS) & set(KIND_MARKERS.values())
 
 
 # --- what is drawn ------------------------------------------------------------------------------------------
@@ -312,7 +362,7 @@ def test_clusters_are_drawn_with_color_sign_and_number_and_strays_as_crosses(ax)
     strays, *clusters = ax.lines
     assert (strays.get_marker(), strays.get_xydata().tolist()) == ("x", [[0.4, 0.4]])
     assert [line.get_marker() for line in clusters] == ["o", "D", "o", "v"]
-    assert [line.get_color() for line in clusters[::2]] == list(look.CLUSTER_COLORS[:2])
+    assert [line.get_color() for line in clusters[::2]] == list(CLUSTER_COLORS[:2])
     assert [text.get_text() for text in ax.texts] == ["0", "1"]
 
 

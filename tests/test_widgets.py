@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import primkit as pk
-from primkit.plots.look import KIND_COLORS
+from primkit.palette import KIND_COLORS
 from primkit.widgets.drawing import (
     MARKERS,
     Frame,
@@ -212,6 +212,18 @@ def test_controls_must_hold_their_start():
 def test_a_twin_needs_settings():
     with pytest.raises(ValueError, match="a twin needs named settings, got none"):
         rings().twin()
+
+
+@pytest.mark.parametrize("name", [name for name in SLIDERS if name != "boards"])
+def test_a_slider_has_the_diagram_of_its_lesson(name):
+    diagram = SLIDERS[name]().diagram()
+    assert repr(diagram).startswith("Diagram: ")
+    assert elements(diagram._repr_svg_())[:3] == ["svg", "title", "desc"]
+
+
+def test_a_diagram_must_have_been_given():
+    with pytest.raises(ValueError, match="a diagram must be given to explore, got none for Slider: seed"):
+        pk.widgets.boards().diagram()
 
 
 # --- drawing ----------------------------------------------------------------------------------------------------

@@ -12,7 +12,8 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from .words import Parser, count, millimetres, path, say, share, whole
+from ..table import count
+from .words import Parser, millimetres, path, say, share, whole
 
 if TYPE_CHECKING:
     from ..evaluation import Report

@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from ..course.untrusted import UNTRUSTED_WORDS
-from .words import LOOK, Parser, count, path, say
+from ..table import count
+from .words import LOOK, Parser, path, say
 
 TEACH_TEXT = "run a course: release problem sets, grade them, see how the class did"
 TEACH_EXAMPLES = """\

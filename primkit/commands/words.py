@@ -105,15 +105,6 @@ share = partial(_number, most=1.0, rule="a share from 0 to 1")
 # --- out ----------------------------------------------------------------------------------------------------
 
 
-def count(n: int, noun: str) -> str:
-    """Return a number of things.
-
-    >>> count(1, "shape"), count(2, "shape")
-    ('1 shape', '2 shapes')
-    """
-    return f"{n} {noun}{'s' * (n != 1)}"
-
-
 def say(text: str) -> None:
     """Print; what the console has no sign for, in the name of a file, is spelled out."""
     encoding = sys.stdout.encoding or "utf-8"

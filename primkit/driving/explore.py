@@ -27,6 +27,8 @@ from ..lidar import Lidar, Scans, scan
 from ..measure import Detection
 from ..pipeline import Memory, find_shapes
 from ..robot import BODY, PERIOD, advance, start_pose
+from ..show import thumbnail
+from ..table import count
 from ..world import World
 from .next_views import View, next_view, shown_from
 from .seen_map import EXPLAINED, SQUARE, SeenMap, open_outlines
@@ -79,7 +81,11 @@ class Exploration:
         return len(self.poses)
 
     def __repr__(self) -> str:
-        return f"Exploration: {len(self.found)} shapes from {self.n_scans} scans in {self.robot_time:.1f} s; {self.why}"
+        seen = f"{count(len(self.found), 'shape')} from {count(self.n_scans, 'scan')}"
+        return f"Exploration: {seen} in {self.robot_time:.1f} s; {self.why}"
+
+    def _repr_html_(self) -> str:
+        return thumbnail(repr(self), dots=self.scans.points(), way=self.path[:, :2])
 
 
 def explore(
@@ -116,7 +122,7 @@ def explore(
     Examples
     --------
     >>> explore(World(), rng=0, most_scans=3)
-    Exploration: 0 shapes from 3 scans in 4.2 s; out of scans
+    Exploration: no shapes from 3 scans in 4.2 s; out of scans
     """
     check_type(world, World, "world must be a World, as in explore(world)")
     lidar = Lidar() if lidar is None else lidar

@@ -44,6 +44,8 @@ from numpy.typing import ArrayLike, NDArray
 from ..arguments import Bools, Floats, Ints, check_type
 from ..grid import Grid, as_cells, as_keys
 from ..lidar import Lidar, Scans
+from ..show import thumbnail
+from ..table import count
 
 BEFORE_A_HIT = 0.01  # m: what lies this near before a hit may be the same outline, seen with 2 mm of noise or grazing
 SHARPEST = np.radians(30)  # no corner of a shape is sharper
@@ -124,7 +126,11 @@ class MovingGrid:
         return len(self._cells)
 
     def __repr__(self) -> str:
-        return f"MovingGrid(resolution={self.resolution:g}): {len(self)} occupied cells after {self.n_scans} scans"
+        seen = f"{count(len(self), 'occupied cell')} of {1000 * self.resolution:g} mm"
+        return f"MovingGrid: {seen} after {count(self.n_scans, 'scan')}"
+
+    def _repr_html_(self) -> str:
+        return thumbnail(repr(self), dots=self.points())
 
     @property
     def last_seen(self) -> Ints:

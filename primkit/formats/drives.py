@@ -34,6 +34,7 @@ from numpy.typing import ArrayLike
 
 from ..arguments import Floats, as_point, as_points, check_type, limit, short
 from ..lidar import Lidar, Scans
+from ..show import thumbnail
 from .files import LINE_LIMIT, StrPath, append_whole, as_path, bounded_read, lines_of, naming, opened, write_atomically
 from .values import numbers_in, parsed
 
@@ -97,6 +98,12 @@ class Drive:
 
     def __len__(self) -> int:
         return len(self.scans)
+
+    def __repr__(self) -> str:
+        return f"Drive: {len(self) * self.period:.1f} s, {str(self.scans).removeprefix('Scans: ')}"
+
+    def _repr_html_(self) -> str:
+        return thumbnail(repr(self), dots=self.scans.points(), way=self.poses[:, :2])
 
 
 class DriveJournal:

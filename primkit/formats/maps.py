@@ -7,7 +7,7 @@ Out: a ``.geojson`` or ``.json`` file; the same world always gives the same byte
 >>> with tempfile.TemporaryDirectory() as folder:
 ...     save_world(World([Circle((0, 0.1), 0.05)]), f"{folder}/map.geojson")
 ...     load_world(f"{folder}/map.geojson")
-World(shapes=(Circle(center=(0, 0.1), radius=0.05),), size=1.0)
+World: 1 m x 1 m, 1 shape: 1 circle
 
 The file is valid GeoJSON, with two conventions of its own: positions are metres in the world frame, in place of
 degrees of longitude and latitude, and a circle is a Point with the property ``radius``.
@@ -127,8 +127,8 @@ def load_world(path: StrPath) -> World:
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = pathlib.Path(folder, "other.json")
     ...     _ = path.write_text('{"type": "Polygon", "coordinates": [[[0, 0], [0, 1], [1, 0], [0, 0]]]}')
-    ...     load_world(path)
-    World(shapes=(Polygon([(0, 0), (1, 0), (0, 1)]),), size=1.0)
+    ...     load_world(path).shapes
+    (Polygon([(0, 0), (1, 0), (0, 1)]),)
     """
     path = as_path(path, MAP_ENDINGS, "a map")
     data = bounded_read(path, MAP_LIMIT)

@@ -15,14 +15,29 @@ Every plot takes ``ax``, the axes to draw on, and returns it. Without one it mak
 a notebook shows that by itself, a script calls ``matplotlib.pyplot.show()``. No plot changes matplotlib's settings.
 For several pictures in one figure, ``plt.subplots(1, 2, layout="constrained")`` keeps titles and labels apart.
 
-Sources: the pictures are the paper's Figures 1 to 3; the colours are Okabe and Ito's (2008), "Color Universal Design",
-which colour-blind readers can tell apart.
+Sources: the pictures are the paper's Figures 1 to 3; the colours are those of ``primkit/palette.py``.
 """
 
+from ..palette import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    INDIGO,
+    INK,
+    KIND_COLORS,
+    KIND_INKS,
+    KIND_MARKERS,
+    ORANGE,
+    PALE,
+    PURPLE,
+    SKY,
+    VERMILION,
+)
 from .accuracy import PANELS, plot_accuracy
 from .driving import plot_change, plot_drive, plot_tour
 from .found import plot_found
-from .look import KIND_COLORS, KIND_MARKERS
+from .look import draw_areas, draw_board
 from .pictures import plot_clusters, plot_points, plot_scan, plot_world
 from .story import plot_story, save_figure
 
@@ -37,8 +52,22 @@ __all__ = [
     "plot_tour",
     "plot_change",
     "plot_accuracy",
+    "draw_board",
+    "draw_areas",
     "save_figure",
     "PANELS",
+    "BLUE",
+    "VERMILION",
+    "GREEN",
+    "PURPLE",
+    "ORANGE",
+    "SKY",
+    "INDIGO",
+    "BLACK",
+    "INK",
+    "GREY",
+    "PALE",
     "KIND_COLORS",
+    "KIND_INKS",
     "KIND_MARKERS",
 ]

@@ -19,9 +19,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..arguments import check_type
+from ..palette import BLACK, BLUE, GREEN, GREY, INK, ORANGE, PALE, PURPLE, VERMILION
 from ..study.accuracy.accuracy_table import COARSE, FINE, TRUTHS, AccuracyLine, AccuracyTable
 from ..study.estimate import Estimate
-from .look import BLACK, BLUE, FIGURE_LETTERS, GREEN, GREY, INK, ORANGE, PALE, PURPLE, VERMILION
+from .look import FIGURE_LETTERS
 from .story import Picture, freeze, plain
 
 PANELS = ("noise", "shapes", "scans", "spurious")  # a sweep of two levels needs no picture

@@ -15,7 +15,9 @@ from collections.abc import Iterator, Sequence
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .look import BLUE, FIGURE_LETTERS, GREY, INK, PALE, count
+from ..palette import BLUE, GREY, INK, PALE
+from ..table import count
+from .look import FIGURE_LETTERS
 from .story import Picture, freeze, plain
 
 Part = tuple[str, str, float, tuple[str, int]]

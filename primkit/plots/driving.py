@@ -25,17 +25,13 @@ from ..arguments import Floats, Ints, as_count, as_points, check_type
 from ..driving import Exploration
 from ..formats import Drive
 from ..grid import Grid
+from ..palette import BLUE, GREY, INK, ORANGE, PALE, VERMILION
+from ..table import count
 from ..world import World
 from .look import (
-    BLUE,
-    GREY,
-    INK,
-    ORANGE,
-    PALE,
     ROBOT_SIGN,
-    VERMILION,
     as_axes,
-    count,
+    check_look,
     draw_areas,
     draw_board,
     draw_legend,
@@ -108,7 +104,7 @@ def plot_drive(world: World, drive: Drive, n_frames: int = 6) -> Figure:
     return figure
 
 
-def plot_tour(world: World, tour: Exploration, ax: Axes | None = None) -> Axes:
+def plot_tour(world: World, tour: Exploration, ax: Axes | None = None, *, title: str | None = None) -> Axes:
     """Draw where the robot drove, where it scanned, and what it saw.
 
     Parameters
@@ -119,9 +115,12 @@ def plot_tour(world: World, tour: Exploration, ax: Axes | None = None) -> Axes:
         What ``explore`` returned.
     ax : Axes, optional
         Where to draw.
+    title : str, optional
+        What to say above it; what there is to see when not given, nothing when empty.
     """
     check_type(world, World, "world must be of type World")
     check_type(tour, Exploration, "tour must be of type Exploration")
+    check_look(title)
     ax = as_axes(ax)
     points = tour.scans.points()
     draw_board(ax, world.size, points, legend=True, walls=world.walled)
@@ -132,11 +131,13 @@ def plot_tour(world: World, tour: Exploration, ax: Axes | None = None) -> Axes:
     (stops,) = ax.plot(*tour.poses[:, :2].T, label="scan", marker="o", color=ORANGE, zorder=4, **look)
     (start,) = ax.plot(*tour.path[:1, :2].T, label="start", marker="D", color="white", zorder=5, **look)
     draw_legend(ax, [way, stops, start])
-    set_title(ax, f"{tour.n_scans} scans in {tour.robot_time:.0f} s: {tour.why}")
+    set_title(ax, f"{tour.n_scans} scans in {tour.robot_time:.0f} s: {tour.why}", title)
     return ax
 
 
-def plot_change(before: World, after: World, points: ArrayLike, ax: Axes | None = None) -> Axes:
+def plot_change(
+    before: World, after: World, points: ArrayLike, ax: Axes | None = None, *, title: str | None = None
+) -> Axes:
     """Draw the points of a grid over a world in which something was moved; ghosts stand out.
 
     Parameters
@@ -147,9 +148,12 @@ def plot_change(before: World, after: World, points: ArrayLike, ax: Axes | None 
         The grid's points, metres; those more than 4 mm from every outline that is there now are ghosts.
     ax : Axes, optional
         Where to draw.
+    title : str, optional
+        What to say above it; what there is to see when not given, nothing when empty.
     """
     check_type(before, World, "before must be of type World")
     check_type(after, World, "after must be of type World")
+    check_look(title)
     points, ax = as_points(points), as_axes(ax)
     off = np.full(len(points), np.inf)
     for shape in after.shapes:
@@ -166,7 +170,7 @@ def plot_change(before: World, after: World, points: ArrayLike, ax: Axes | None 
     was = Line2D([], [], color=GREY, linestyle="--", label="where it was")
     here = Line2D([], [], color=INK, marker="o", markersize=3, linestyle="none", label="point")
     draw_legend(ax, [was, here, Line2D([], [], color=ORANGE, marker="x", linestyle="none", label="ghost")])
-    set_title(ax, f"{ghost.sum()} of {len(points)} points are ghosts")
+    set_title(ax, f"{ghost.sum()} of {len(points)} points are ghosts", title)
     return ax
 
 

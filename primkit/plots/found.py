@@ -18,20 +18,20 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.typing import ColorType
 
 from ..arguments import Floats, check_type
 from ..evaluation import Match, Report
 from ..measure import Detection
+from ..palette import GREY, INK, KIND_COLORS
 from ..seen import is_seen
 from ..shapes import Circle, Polygon, Shape
+from ..table import count
 from ..world import World
 from .labels import write_labels
 from .look import (
-    GREY,
-    INK,
-    KIND_COLORS,
     as_axes,
-    count,
+    check_look,
     draw_areas,
     draw_board,
     draw_center,
@@ -49,6 +49,9 @@ def plot_found(
     world: World | None = None,
     ax: Axes | None = None,
     report: Report | None = None,
+    *,
+    title: str | None = None,
+    color: ColorType | None = None,
 ) -> Axes:
     """Draw the shapes that were found over the truth, with their errors (the paper's Figure 3).
 
@@ -63,6 +66,10 @@ def plot_found(
     report : Report, optional
         The comparison of these shapes with the truth: each label then states the largest error of the centre
         and of the dimensions, and what was missed or is a false alarm is named.
+    title : str, optional
+        What to say above it; what there is to see when not given, nothing when empty.
+    color : color, optional
+        Of all outlines that were found; of each kind its own when not given.
 
     Raises
     ------
@@ -80,6 +87,7 @@ def plot_found(
         check_type(world, World, "world must be of type World")
     if report is not None:
         check_type(report, Report, "report must be of type Report")
+    check_look(title, color)
     notes, truth = _notes(shapes, report), _truth(world, report)
     ax, (size, walls) = as_axes(ax), (1.0, False) if world is None else (world.size, world.walled)
     # A found shape may be absurdly large.
@@ -88,9 +96,9 @@ def plot_found(
     if report is not None:
         draw_areas(ax, report.missed, facecolor="none", hatch="////")
     for item, shape in zip(found, shapes, strict=True):
-        _draw_outline(ax, shape, item.points if isinstance(item, Detection) else None)
+        _draw_outline(ax, shape, item.points if isinstance(item, Detection) else None, color)
     draw_legend(ax, _found_legend(bool(truth), bool(found)))
-    set_title(ax, _verdict(len(found), report))
+    set_title(ax, _verdict(len(found), report), title)
     write_labels(ax, notes, [*shapes, *truth], room)
     return ax
 
@@ -108,9 +116,9 @@ def _truth(world: World | None, report: Report | None) -> tuple[Shape, ...]:
     return () if report is None else (*(m.true for m in report.matches), *report.missed)
 
 
-def _draw_outline(ax: Axes, shape: Shape, points: Floats | None) -> None:
+def _draw_outline(ax: Axes, shape: Shape, points: Floats | None, own: ColorType | None = None) -> None:
     """Draw a found shape: its outline, dashed where none of the points lies near, its corners and its centre."""
-    color = KIND_COLORS[shape.kind]
+    color = KIND_COLORS[shape.kind] if own is None else own
     corners = shape.outline(240) if isinstance(shape, Circle) else shape.vertices
     ring = np.vstack([corners, corners[:1]])
     if isinstance(shape, Polygon):  # fine steps along each side, its two ends included
@@ -120,7 +128,7 @@ def _draw_outline(ax: Axes, shape: Shape, points: Floats | None) -> None:
         ax.plot(*ring.T, color=color, linewidth=1.2, linestyle=DASHES, zorder=3)
         ring = np.where(is_seen(ring, points)[:, None], ring, np.nan)
     ax.plot(*ring.T, color=color, linewidth=2, solid_capstyle="butt", zorder=3)
-    draw_center(ax, shape)
+    draw_center(ax, shape, own)
 
 
 def _found_legend(truth: bool, found: bool) -> list[Artist]:
@@ -162,7 +170,7 @@ def _in_mm(what: str, errors: Iterable[float], right: bool) -> str:
 def _verdict(n_found: int, report: Report | None) -> str:
     """Return the finding in a few words."""
     if report is None or not (report.matches or report.missed or report.false_alarms):
-        return f"{count(n_found, 'shape')} found"
+        return f"{count(n_found, 'shape').capitalize()} found"
     right, n = sum(m.all_right for m in report.matches), len(report.matches) + len(report.missed)
     if right == n and not report.false_alarms:
         return f"{count(n, 'shape')} found, {'all ' if n > 1 else ''}{_closeness(report)}"

@@ -25,8 +25,9 @@ from matplotlib.text import Text
 from numpy.typing import NDArray
 
 from ..arguments import Floats
+from ..palette import GREY, KIND_INKS
 from ..shapes import Circle, Shape
-from .look import GREY, KIND_INKS, at_each_size, letters, width_of
+from .look import at_each_size, letters, width_of
 
 Chosen = dict[int, tuple[int, float]]  # label: its place, and what that costs
 

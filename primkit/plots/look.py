@@ -1,10 +1,13 @@
-"""Look: the colours and signs, the board, and what all pictures share.
+"""Look: the board, and what all pictures share.
 
 In:  the axes, and what is to be drawn on them.
 Out: artists on these axes; sizes of letters that suit their width.
 
->>> KIND_COLORS["circle"], KIND_MARKERS["circle"]
-('#0072B2', 'o')
+>>> import matplotlib.figure
+>>> ax = matplotlib.figure.Figure().subplots()
+>>> set_title(ax, "Four shapes")
+>>> ax.get_title(loc="left")
+'Four shapes'
 """
 
 from __future__ import annotations
@@ -18,40 +21,18 @@ from typing import Any
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.colors import to_hex, to_rgb, to_rgba
+from matplotlib.colors import is_color_like, to_rgba
 from matplotlib.legend import Legend
 from matplotlib.patches import Circle as CirclePatch
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.patches import Polygon as PolygonPatch
 from matplotlib.ticker import MaxNLocator
+from matplotlib.typing import ColorType
 
-from ..arguments import Floats, check_type
+from ..arguments import Floats, check_type, short
+from ..palette import GREY, INK, KIND_COLORS, KIND_MARKERS
 from ..robot import BODY
-from ..shapes import Circle, Kind, Shape
-
-# Okabe and Ito's colours; their yellow is too faint on white. The first four have a contrast of 3 and more to white.
-BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
-ORANGE, SKY, BLACK = "#E69F00", "#56B4E9", "#000000"
-INDIGO = "#332288"  # of Paul Tol's colour-blind palette: Okabe and Ito have no fifth of that contrast but black
-INK, GREY, PALE = "#222222", "#6E6E6E", "#C8C8C8"
-
-KIND_COLORS: dict[Kind, str] = {
-    "circle": BLUE,
-    "triangle": VERMILION,
-    "rectangle": GREEN,
-    "pentagon": PURPLE,
-    "polygon": INDIGO,
-}
-# The same, darker: letters need a contrast of 4.5 and more.
-KIND_INKS: dict[Kind, str] = {
-    kind: to_hex((0.7 * red, 0.7 * green, 0.7 * blue))
-    for kind, (red, green, blue) in ((kind, to_rgb(color)) for kind, color in KIND_COLORS.items())
-}
-KIND_MARKERS: dict[Kind, str] = {"circle": "o", "triangle": "^", "rectangle": "s", "pentagon": "p", "polygon": "h"}
-# A cluster's kind is not known yet: the colours that no kind has come first, and no marker is a kind's. Seven colours
-# with six markers: the pairs repeat after 42 clusters.
-CLUSTER_COLORS = (ORANGE, SKY, BLACK, PURPLE, VERMILION, BLUE, GREEN)
-CLUSTER_MARKERS = ("D", "v", "P", "X", "<", "*")
+from ..shapes import Circle, Shape
 
 BOARD_MARGIN = 0.03  # of the board's size, left free around it
 LEGEND_BAND = 0.06  # of the board's size, left free above it for a legend
@@ -115,8 +96,17 @@ def letters(ax: Axes, size: float) -> float:
     return max(marks(ax, size), LEAST_LETTERS)
 
 
-def set_title(ax: Axes, text: str) -> None:
-    """Set the title, on as many lines as the width of the axes asks for."""
+def check_look(title: str | None, color: ColorType | None = None) -> None:
+    """Refuse a title that is no text, and a colour that is none of matplotlib's."""
+    if title is not None:
+        check_type(title, str, "title must be a text")
+    if color is not None and not is_color_like(color):
+        raise ValueError(f'color must be a colour, such as "tab:blue" or "#0072B2", got {short(color)}')
+
+
+def set_title(ax: Axes, text: str, own: str | None = None) -> None:
+    """Set the title, the user's own if there is one, on as many lines as the width of the axes asks for."""
+    text = text if own is None else own
     title = ax.set_title("", loc="left", size=max(letters(ax, 11), 8), weight="bold")
     together = re.sub(r"(\d) (mm|m)\b", "\\1\u00a0\\2", text)  # a number and its unit stay on one line
     for columns in range(max(len(text), LEAST_COLUMNS), LEAST_COLUMNS - 1, -1):
@@ -172,10 +162,10 @@ def outlines(shapes: Iterable[Shape]) -> Floats:
     return np.vstack([np.empty((0, 2)), *(s.outline(40) if isinstance(s, Circle) else s.vertices for s in shapes)])
 
 
-def draw_areas(ax: Axes, shapes: Iterable[Shape], **look: Any) -> None:
-    """Fill shapes with their kinds' colours, lightly unless ``look`` says otherwise."""
+def draw_areas(ax: Axes, shapes: Iterable[Shape], own: ColorType | None = None, **look: Any) -> None:
+    """Fill shapes with their kinds' colours or the user's own, lightly unless ``look`` says otherwise."""
     for shape in shapes:
-        color = KIND_COLORS[shape.kind]
+        color = KIND_COLORS[shape.kind] if own is None else own
         usual = {"facecolor": to_rgba(color, 0.2), "edgecolor": color, "linewidth": 0, "zorder": 1}
         ax.add_patch(patch(shape, **(usual | look)))
 
@@ -188,17 +178,7 @@ def draw_robot(ax: Axes, pose: Floats, width: float = 1.0) -> None:
     ax.plot([x, x + nose[0]], [y, y + nose[1]], color=INK, linewidth=1.6 * width, solid_capstyle="butt", zorder=5)
 
 
-def draw_center(ax: Axes, shape: Shape) -> None:
+def draw_center(ax: Axes, shape: Shape, own: ColorType | None = None) -> None:
     """Mark a shape's centre with its kind's sign."""
-    color, marker = KIND_COLORS[shape.kind], KIND_MARKERS[shape.kind]
+    color, marker = KIND_COLORS[shape.kind] if own is None else own, KIND_MARKERS[shape.kind]
     ax.plot(*shape.centroid, marker, color=color, markersize=marks(ax, 6), markeredgewidth=0, zorder=4)
-
-
-def count(n: int, noun: str) -> str:
-    """Return a number with its noun.
-
-    >>> count(0, "shape"), count(1, "shape"), count(1234, "point")
-    ('No shapes', '1 shape', '1,234 points')
-    """
-    number = f"{n:,}" if n else "No"
-    return f"{number} {noun}" if n == 1 else f"{number} {noun}s"

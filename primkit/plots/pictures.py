@@ -9,7 +9,6 @@ Out: these axes, with a title that states what there is to see.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -18,24 +17,22 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle as CirclePatch
+from matplotlib.typing import ColorType
 from numpy.typing import ArrayLike, NDArray
 
 from ..arguments import Floats, as_count, as_points, as_positive, check_type
 from ..lidar import Lidar, Scans
+from ..palette import CLUSTER_COLORS, CLUSTER_MARKERS, GREY, INK, ORANGE, PALE
 from ..raycast import cast_rays
-from ..shapes import KINDS, Circle, Shape
+from ..shapes import Circle
+from ..show import census
+from ..table import count
 from ..world import World
 from .labels import write_labels
 from .look import (
-    CLUSTER_COLORS,
-    CLUSTER_MARKERS,
-    GREY,
-    INK,
-    ORANGE,
-    PALE,
     ROBOT_SIGN,
     as_axes,
-    count,
+    check_look,
     draw_areas,
     draw_board,
     draw_center,
@@ -51,7 +48,9 @@ from .look import (
 SIGNS_PER_CLUSTER = 6  # larger markers on each cluster, so that it can be told from the others without colour
 
 
-def plot_world(world: World, ax: Axes | None = None) -> Axes:
+def plot_world(
+    world: World, ax: Axes | None = None, *, title: str | None = None, color: ColorType | None = None
+) -> Axes:
     """Draw the board with its shapes, and the names of their kinds where there is room (the paper's Figure 1b, c).
 
     Parameters
@@ -60,6 +59,10 @@ def plot_world(world: World, ax: Axes | None = None) -> Axes:
         The truth.
     ax : Axes, optional
         Where to draw.
+    title : str, optional
+        What to say above it; what there is to see when not given, nothing when empty.
+    color : color, optional
+        Of all shapes; of each kind its own when not given.
 
     Examples
     --------
@@ -67,27 +70,29 @@ def plot_world(world: World, ax: Axes | None = None) -> Axes:
     'No shapes'
     """
     check_type(world, World, "world must be of type World")
+    check_look(title, color)
     ax = as_axes(ax)
     room = draw_board(ax, world.size, outlines(world.shapes), walls=world.walled)
-    draw_areas(ax, world.shapes, linewidth=1.5)
+    draw_areas(ax, world.shapes, color, linewidth=1.5)
     for shape in world.shapes:
-        draw_center(ax, shape)
-    set_title(ax, _census(world.shapes))
+        draw_center(ax, shape, color)
+    set_title(ax, census(world.shapes).capitalize(), title)
     write_labels(ax, [(shape.kind, shape) for shape in world.shapes], (), room)
     return ax
-
-
-def _census(shapes: Sequence[Shape]) -> str:
-    kinds = [shape.kind for shape in shapes]
-    counts = ", ".join(count(kinds.count(kind), kind) for kind in KINDS if kind in kinds)
-    return count(len(shapes), "shape") + (f": {counts}" if counts else "")
 
 
 # --- what the robot sees ------------------------------------------------------------------------------------
 
 
 def plot_scan(
-    world: World, scans: Scans, index: int = 0, ax: Axes | None = None, *, lidar: Lidar | None = None
+    world: World,
+    scans: Scans,
+    index: int = 0,
+    ax: Axes | None = None,
+    *,
+    lidar: Lidar | None = None,
+    title: str | None = None,
+    color: ColorType | None = None,
 ) -> Axes:
     """Draw one scan: the robot, its LiDAR's range, and every beam (the paper's Figure 1a).
 
@@ -103,6 +108,10 @@ def plot_scan(
         Where to draw.
     lidar : Lidar, optional
         The sensor whose range is drawn; the paper's by default.
+    title : str, optional
+        What to say above it; what there is to see when not given, nothing when empty.
+    color : color, optional
+        Of the beams that hit; orange when not given.
 
     Raises
     ------
@@ -121,16 +130,18 @@ def plot_scan(
         check_type(value, kind, f"{name} must be of type {kind.__name__}")
     if as_count(index, "index", least=0) >= len(scans):
         raise ValueError(f"index must be below the number of scans, got {index} for {len(scans)}")
+    check_look(title, color)
     ax, seen = as_axes(ax), scans[index : index + 1]
     draw_board(ax, world.size, Circle(seen.poses[0, :2], lidar.range_max).outline(4), legend=True, walls=world.walled)
     draw_areas(ax, world.shapes, linewidth=1.5)
-    draw_legend(ax, [*_draw_beams(ax, world, seen, lidar), *_draw_range(ax, seen.poses[0], lidar)])
+    beams = _draw_beams(ax, world, seen, lidar, ORANGE if color is None else color)
+    draw_legend(ax, [*beams, *_draw_range(ax, seen.poses[0], lidar)])
     hits = f"{seen.hits.sum()} of {seen.hits.size} beams hit"
-    set_title(ax, f"Scan {index}: {'inside a shape, it sees nothing' if seen.inside[0] else hits}")
+    set_title(ax, f"Scan {index}: {'inside a shape, it sees nothing' if seen.inside[0] else hits}", title)
     return ax
 
 
-def _draw_beams(ax: Axes, world: World, seen: Scans, lidar: Lidar) -> list[Artist]:
+def _draw_beams(ax: Axes, world: World, seen: Scans, lidar: Lidar, color: ColorType) -> list[Artist]:
     """Draw the beams of one scan as far as they go; return what the legend shows."""
     start, bearings, hit = seen.poses[0, :2], seen.poses[0, 2] + seen.angles, seen.hits[0]
     turned = np.column_stack([np.broadcast_to(start, (len(bearings), 2)), bearings])
@@ -139,9 +150,9 @@ def _draw_beams(ax: Axes, world: World, seen: Scans, lidar: Lidar) -> list[Artis
     ends = start + reach[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)])
     beams = np.stack([turned[:, :2], ends], axis=1)
     ax.add_collection(LineCollection(beams[~hit], colors=PALE, linewidths=0.6, zorder=2), autolim=False)
-    ax.add_collection(LineCollection(beams[hit], colors=ORANGE, linewidths=0.9, zorder=3), autolim=False)
+    ax.add_collection(LineCollection(beams[hit], colors=[color], linewidths=0.9, zorder=3), autolim=False)
     ax.plot(*ends[hit].T, "o", color=INK, markersize=marks(ax, 3), markeredgewidth=0, zorder=4)
-    dot = Line2D([], [], color=ORANGE, marker="o", markersize=3, markerfacecolor=INK, markeredgewidth=0, label="hit")
+    dot = Line2D([], [], color=color, marker="o", markersize=3, markerfacecolor=INK, markeredgewidth=0, label="hit")
     return [dot, Line2D([], [], color=PALE, label="no hit")]
 
 
@@ -158,7 +169,14 @@ def _draw_range(ax: Axes, pose: Floats, lidar: Lidar) -> list[Artist]:
 # --- points and clusters ------------------------------------------------------------------------------------
 
 
-def plot_points(points: ArrayLike, ax: Axes | None = None, *, size: float = 1.0) -> Axes:
+def plot_points(
+    points: ArrayLike,
+    ax: Axes | None = None,
+    *,
+    size: float = 1.0,
+    title: str | None = None,
+    color: ColorType | None = None,
+) -> Axes:
     """Draw the grid's points (the paper's Figure 2a).
 
     Parameters
@@ -169,6 +187,10 @@ def plot_points(points: ArrayLike, ax: Axes | None = None, *, size: float = 1.0)
         Where to draw.
     size : float
         Side of the board in metres.
+    title : str, optional
+        What to say above it; what there is to see when not given, nothing when empty.
+    color : color, optional
+        Of the points; black when not given.
 
     Raises
     ------
@@ -181,14 +203,17 @@ def plot_points(points: ArrayLike, ax: Axes | None = None, *, size: float = 1.0)
     'No points on the grid'
     """
     points, size = as_points(points), as_positive(size, "size")
+    check_look(title, color)
     ax = as_axes(ax)
     draw_board(ax, size, points)
-    ax.plot(*points.T, "o", color=INK, markersize=marks(ax, 2.4), markeredgewidth=0)
-    set_title(ax, f"{count(len(points), 'point')} on the grid")
+    ax.plot(*points.T, "o", color=INK if color is None else color, markersize=marks(ax, 2.4), markeredgewidth=0)
+    set_title(ax, f"{count(len(points), 'point').capitalize()} on the grid", title)
     return ax
 
 
-def plot_clusters(points: ArrayLike, labels: ArrayLike, ax: Axes | None = None, *, size: float = 1.0) -> Axes:
+def plot_clusters(
+    points: ArrayLike, labels: ArrayLike, ax: Axes | None = None, *, size: float = 1.0, title: str | None = None
+) -> Axes:
     """Draw each cluster in its own colour, with its own marker and its number (the paper's Figure 2b).
 
     Parameters
@@ -201,6 +226,8 @@ def plot_clusters(points: ArrayLike, labels: ArrayLike, ax: Axes | None = None, 
         Where to draw.
     size : float
         Side of the board in metres.
+    title : str, optional
+        What to say above it; what there is to see when not given, nothing when empty.
 
     Raises
     ------
@@ -214,13 +241,15 @@ def plot_clusters(points: ArrayLike, labels: ArrayLike, ax: Axes | None = None, 
     '1 cluster, 1 stray'
     """
     points, size = as_points(points), as_positive(size, "size")
+    check_look(title)
     labels, ax = _as_labels(labels, len(points)), as_axes(ax)
     draw_board(ax, size, points)
     strays, numbers = points[labels < 0], np.unique(labels[labels >= 0]).tolist()
     ax.plot(*strays.T, "x", color=GREY, markersize=marks(ax, 5), markeredgewidth=1)
     for number in numbers:
         _draw_cluster(ax, points[labels == number], number)
-    set_title(ax, count(len(numbers), "cluster") + (f", {count(len(strays), 'stray')}" if len(strays) else ""))
+    aside = f", {count(len(strays), 'stray')}" if len(strays) else ""
+    set_title(ax, count(len(numbers), "cluster").capitalize() + aside, title)
     return ax
 
 

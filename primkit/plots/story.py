@@ -22,9 +22,10 @@ from ..formats import StrPath, write_atomically
 from ..lidar import Scans
 from ..measure import Detection
 from ..shapes import Shape
+from ..table import count
 from ..world import World
 from .found import plot_found
-from .look import count, set_title
+from .look import set_title
 from .pictures import plot_clusters, plot_points, plot_scan, plot_world
 
 PICTURE_DPI = 200
@@ -101,7 +102,7 @@ def plot_story(
         plot_points(points, axes["b"], size=world.size)
         plot_clusters(points, labels, axes["c"], size=world.size)
         _as_step(axes["a"], "a) One scan" if len(scans) else "a) No scans")
-        _as_step(axes["b"], f"b) {count(len(points), 'point')}")
+        _as_step(axes["b"], f"b) {count(len(points), 'point').capitalize()}")
         _as_step(axes["c"], f"c) {axes['c'].get_title(loc='left')}")
         figure.supxlabel(report.scores().replace(" = ", "\n= "), size=8)
         plot_found(found, world, axes["d"], report)

@@ -8,5 +8,6 @@ Out: ``Scene``, ``Replay``: widgets for a notebook's cell.
 
 from .replay import Replay, replay
 from .scene import Scene, drive_scene
+from .state import DriveState
 
-__all__ = ["drive_scene", "Scene", "replay", "Replay"]
+__all__ = ["drive_scene", "Scene", "replay", "Replay", "DriveState"]

@@ -18,7 +18,7 @@ from ..arguments import Floats, Ints
 from ..driving.seen_map import OUTLINE_STEP
 from ..lidar import Lidar
 from ..measure import Detection
-from ..plots.look import GREY, INK, KIND_COLORS, KIND_INKS, ORANGE, PALE, SKY
+from ..palette import GREY, INK, KIND_COLORS, KIND_INKS, ORANGE, PALE, SKY
 from ..robot import BODY
 from ..seen import is_seen
 from ..shapes import Circle, Shape

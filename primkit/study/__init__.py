@@ -24,7 +24,7 @@ from .accuracy.partial import PartialLine, run_partial
 from .accuracy.sweeps import REMEDIES, SWEEPS, UNTUNED
 from .accuracy.whole import accuracy_study
 from .cluster import on_cluster
-from .estimate import Estimate
+from .estimate import Estimate, mean_of, share_of
 from .experiment import Experiment, Run, perform, run
 from .journal import JOURNAL, make_folder, n_rows
 from .many import METHODS, maps_in, run_study
@@ -35,8 +35,8 @@ from .row import Row, Score
 from .seen_table import SeenLine, seen_table
 
 __all__ = ["run_study", "on_cluster", "METHODS", "maps_in", "Experiment", "run", "Run", "perform", "Row", "Score"]
-__all__ += ["tables", "Line", "PUBLISHED", "rows_as_csv", "write_tables", "Estimate"]
-__all__ += ["JOURNAL", "make_folder", "n_rows"]
+__all__ += ["tables", "Line", "PUBLISHED", "rows_as_csv", "write_tables"]
+__all__ += ["Estimate", "mean_of", "share_of", "JOURNAL", "make_folder", "n_rows"]
 __all__ += ["ORACLE", "Oracle", "told_points", "oracle_fit", "shares_seen"]
 __all__ += ["seen_table", "SeenLine"]
 __all__ += ["accuracy_study", "run_accuracy", "AccuracyTable", "AccuracyLine", "accuracy_as_csv"]

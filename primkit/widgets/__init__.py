@@ -2,6 +2,7 @@
 
 Beside the story. A lesson shows its slider with ``pk.widgets.rays()``,
 and below it the same picture for a few named settings, which needs no Python behind it: ``pk.widgets.rays().twin()``.
+The drawing behind the lesson's formula is ``pk.widgets.rays().diagram()``.
 
 In:  a lesson's values: beams, noise, a seed.
 Out: an ``Explorer``; its ``draw(**values)`` returns the picture as SVG text.
@@ -11,13 +12,13 @@ Out: an ``Explorer``; its ``draw(**values)`` returns the picture as SVG text.
 '9 of 24 beams meet an outline within 0.3 m, with noise of 0 mm; the nearest hit is 17.0 cm away.'
 """
 
-from .arcs import arcs
+from .arcs import arcs, show_circles
 from .boards import boards
 from .cells import cells
 from .drawing import what_it_says
-from .edges import edges
+from .edges import edges, show_lines
 from .groups import groups
-from .naming import naming
+from .naming import fit_each_kind, naming
 from .rays import rays
 from .scoring import scoring
 from .slider import Choice, Explorer, Slider, explore
@@ -36,6 +37,9 @@ __all__ = [
     "naming",
     "scoring",
     "wheels",
+    "show_lines",
+    "show_circles",
+    "fit_each_kind",
     "explore",
     "Explorer",
     "Slider",

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..arguments import Floats
 from ..circles import fit_circle
-from ..plots.look import BLACK, BLUE, GREY, INK, ORANGE, PALE, PURPLE, VERMILION
+from ..palette import BLACK, BLUE, GREY, INK, ORANGE, PALE, PURPLE, VERMILION
 from ..shapes import Circle
 from .drawing import Frame, picture, square_frame
 from .slider import Choice, Explorer, Picture, Slider, explore
@@ -54,6 +54,7 @@ def arcs() -> Explorer:
             "a sixth, no noise": {"arc": 60, "noise": 0.0},
             "who can tell?": {"arc": 30, "noise": 5.0, "seed": 3},
         },
+        diagram=draw_diagram,
     )
 
 
@@ -71,7 +72,7 @@ def draw_arcs(arc: int, noise: float, seed: int, show: str) -> str:
     )
 
 
-def circles_among(points: Floats, circles: Mapping[str, Circle | XYR | None], truth: Circle, title: str) -> Picture:
+def show_circles(points: Floats, circles: Mapping[str, Circle | XYR | None], truth: Circle, title: str) -> Picture:
     """Return the picture of points, shape (N, 2), the true circle, and fitted ones by the names of ``CIRCLE_FITS``."""
     fits = {name: Circle(c[:2], c[2]) if isinstance(c, tuple) else c for name, c in circles.items()}
     said = ", ".join(f"{name} {_millimetres(circle)}" for name, circle in fits.items())
@@ -128,7 +129,7 @@ def _millimetres(circle: Circle | None) -> str:
     return f"{1000 * circle.radius:.0f} mm"
 
 
-def diagram() -> Picture:
+def draw_diagram() -> Picture:
     """Return the drawing behind Kasa's bias: the same gap makes a ring whose area grows with the circle."""
     gap, small, large = 0.02, 0.05, 0.1
     frame = Frame((0.0, 0.44), (0.0, 0.26), width=603, height=387)

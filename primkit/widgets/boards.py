@@ -13,8 +13,9 @@ import numpy as np
 
 from ..grid import Grid
 from ..lidar import Lidar, scan
-from ..plots.look import INK, count
+from ..palette import INK
 from ..robot import teleport_poses
+from ..table import count
 from ..world import random_world
 from .drawing import board_frame, picture
 from .slider import Choice, Explorer, Slider, explore

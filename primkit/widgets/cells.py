@@ -15,8 +15,9 @@ from ..arguments import Floats
 from ..circles import fit_circle
 from ..grid import Grid
 from ..lidar import Lidar, Scans, scan
-from ..plots.look import BLUE, GREY, INK, ORANGE, PALE, SKY, VERMILION, count
+from ..palette import BLUE, GREY, INK, ORANGE, PALE, SKY, VERMILION
 from ..shapes import Circle
+from ..table import count
 from ..world import World
 from .drawing import Frame, path, picture, square_frame
 from .slider import Choice, Explorer, Picture, Slider, explore
@@ -48,6 +49,7 @@ def cells() -> Explorer:
             "read at the corner": {"cell": 20, "read": READ_AT_CORNER},
             "poses 5 mm off": {"cell": 1, "error": 5.0},
         },
+        diagram=draw_diagram,
     )
 
 
@@ -139,7 +141,7 @@ def _numbers(ends: tuple[float, float], side: float) -> range:
     return range(int(np.ceil(ends[0] / side)), int(np.floor(ends[1] / side)) + 1)
 
 
-def diagram() -> Picture:
+def draw_diagram() -> Picture:
     """Return the drawing behind the lesson's formulas: from a range to a hit, to its cell, to the cell's centre."""
     side, pose, beam, reach = 0.02, np.array([-0.03, -0.017, np.radians(14)]), np.radians(17), 0.078
     frame = Frame((-0.06, 0.08), (-0.04, 0.06), width=565, height=425, x_ticks=CELL_BORDERS, y_ticks=CELL_BORDERS[1:7])

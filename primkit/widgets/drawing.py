@@ -24,7 +24,7 @@ from html import escape, unescape
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..plots.look import BLUE, GREY, INK, KIND_COLORS, PALE
+from ..palette import BLUE, GREY, INK, KIND_COLORS, PALE
 from ..shapes import Circle, Shape
 
 PAD_LEFT, PAD_RIGHT, PAD_TOP, PAD_BOTTOM = 60, 15, 30, 45  # px around the axes: numbers, names, title

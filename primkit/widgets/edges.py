@@ -19,7 +19,7 @@ from ..arguments import Floats
 from ..grid import Grid
 from ..lidar import Lidar, scan
 from ..lines import LINE, Line
-from ..plots.look import BLUE, CLUSTER_COLORS, GREY, INK, ORANGE, SKY, VERMILION
+from ..palette import BLUE, CLUSTER_COLORS, GREY, INK, ORANGE, SKY, VERMILION
 from ..ransac import draw_samples
 from ..robot import teleport_poses
 from ..shapes import Polygon
@@ -50,6 +50,7 @@ def edges() -> Explorer:
             "band thinner than the noise": {"trial": 60, "threshold": 1.0, "noise": 4.0},
             "band too wide": {"trial": 60, "threshold": 20.0},
         },
+        diagram=draw_diagram,
     )
 
 
@@ -120,7 +121,7 @@ def show_lines(
     return Picture(picture(frame, *parts, outline, title=title, says=says), title)
 
 
-def diagram() -> Picture:
+def draw_diagram() -> Picture:
     """Return the drawing behind the lesson's formula: a line n . p = d, its band, and a point's distance."""
     line, t = Line(np.radians(55), 0.2), 0.045
     n, u = line.normal, line.direction

@@ -13,7 +13,7 @@ import numpy as np
 from ..arguments import Floats, Labels
 from ..grid import Grid
 from ..lidar import scan
-from ..plots.look import BLACK, BLUE, CLUSTER_COLORS, GREY, INK, ORANGE, PALE
+from ..palette import BLACK, BLUE, CLUSTER_COLORS, GREY, INK, ORANGE, PALE
 from ..robot import teleport_poses
 from ..shapes import Circle, Polygon
 from ..world import World, random_world
@@ -62,6 +62,7 @@ def groups() -> Explorer:
             "same seed, k-means++": {"seed": 2, "start": SPREAD_START, "step": 2 * KMEANS_ROUNDS},
             "long and small": {"board": LONG_AND_SMALL, "k": 2, "step": 2 * KMEANS_ROUNDS},
         },
+        diagram=draw_diagram,
     )
 
 
@@ -205,7 +206,7 @@ def spread_points(points: Floats, k: int, rng: np.random.Generator) -> Floats:
 # --- the diagram --------------------------------------------------------------------------------------------------
 
 
-def diagram() -> Picture:
+def draw_diagram() -> Picture:
     """Return the drawing behind the lesson's idea: each point to its nearest centre, each centre to its mean."""
     points = np.array([(1, 1), (2, 3), (3, 1), (4, 3), (7, 4), (8, 2), (9, 5), (8, 6)]) / 10
     old = np.array([(0.2, 0.5), (0.45, 0.35)])

@@ -3,7 +3,7 @@
 >>> naming()
 Slider: shape, noise, view points, price
 >>> ring = Circle((0, 0), 0.06).outline(100)
->>> [(one.kind, one.numbers) for one in fitted(ring)]
+>>> [(one.kind, one.numbers) for one in fit_each_kind(ring)]
 [('circle', 3), ('triangle', 6), ('rectangle', 5), ('pentagon', 10)]
 """
 
@@ -19,7 +19,7 @@ from ..arguments import Floats
 from ..circles import fit_circle
 from ..grid import Grid
 from ..lidar import Lidar, scan
-from ..plots.look import BLUE, GREY, INK, KIND_COLORS, ORANGE, PALE, VERMILION
+from ..palette import BLUE, GREY, INK, KIND_COLORS, ORANGE, PALE, VERMILION
 from ..robust.outlines import Outlines, from_angle_order, joined
 from ..robust.refine import refine_hard
 from ..robust.scatter import spread_across
@@ -45,6 +45,7 @@ FIRST_BEARING = -2.2  # rad: of the first place, at the lower left
 REFIT_REACH = 0.1  # m: every point of the group counts for every candidate
 WALL_RADIUS = 0.25  # m: a larger circle is a wall
 TURNED_STARTS = 6  # first guesses of an outline, each turned a little further
+SAME_OUTLINE = 1e-6  # guesses whose squared distances differ by less than this share end in the same outline
 CORNER_CUTS = (0.002, 0.008)  # m: how much of a corner a first guess cuts off
 # A closed outline bends at each corner by this at least and at most [rad], and has no shorter side than this [m].
 CLOSED_LEAST_TURN, CLOSED_MOST_TURN, CLOSED_LEAST_SIDE = np.radians(2), np.radians(175), 0.003
@@ -89,6 +90,7 @@ def naming() -> Explorer:
             "a small circle in noise": {"shape": "small circle", "noise": 6.0},
             "a pentagon half seen": {"shape": "pentagon", "noise": 6.0, "views": 5},
         },
+        diagram=draw_diagram,
     )
 
 
@@ -98,7 +100,7 @@ def draw_naming(shape: str, noise: float, views: int, price: str) -> str:
     grid = Grid(resolution=0.001)
     grid.add(scan(World([truth]), poses, Lidar(noise_std=noise / 1000), rng=0))
     points = grid.points()
-    found = fitted(points)
+    found = fit_each_kind(points)
     misfits = np.array([one.misfit(points, spread) for one in found])
     prices = np.array([one.numbers for one in found]) * (np.log(len(points)) if price == FAIR_PRICE else 0.0)
     costs = misfits + prices
@@ -126,7 +128,7 @@ def view_points(views: int) -> Floats:
     return np.column_stack([x, y, np.arctan2(-y, -x)])
 
 
-def fitted(points: Floats) -> tuple[Fitted, ...]:
+def fit_each_kind(points: Floats) -> tuple[Fitted, ...]:
     """Return the circle, triangle, upright rectangle and pentagon closest to points, shape (N, 2), metres."""
     middle = points.mean(axis=0)
     local = points - middle
@@ -181,7 +183,7 @@ def _closest(points: Floats, guess: Outlines, *, square: bool = False) -> Outlin
         return None
     found = found[closed]
     squares = (found.distances(points).max(axis=2) ** 2).sum(axis=1)
-    best = int(np.argmin(squares))
+    best = int(np.argmax(squares <= (1 + SAME_OUTLINE) * squares.min()))  # the first: no processor's rounding decides
     return found[best : best + 1]
 
 
@@ -256,7 +258,7 @@ def _says(kind: Kind, margin: float, shape: str, noise: float, views: int, n_poi
     return f"{seen}: the cheapest candidate is a {kind}, by a margin of {margin:.0f}, which is {_verdict(margin)}."
 
 
-def diagram() -> Picture:
+def draw_diagram() -> Picture:
     """Return the drawing behind the lesson's formula: two lines n . p = d, and the corner in which they meet."""
     angles, offsets = np.radians([20.0, 100.0]), np.array([0.4, 0.28])
     normals = np.column_stack([np.cos(angles), np.sin(angles)])

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..lidar import Lidar, scan
-from ..plots.look import BLUE, GREY, INK, ORANGE, PALE, VERMILION
+from ..palette import BLUE, GREY, INK, ORANGE, PALE, VERMILION
 from ..shapes import Circle, Polygon
 from ..world import World
 from .drawing import Frame, board_frame, picture
@@ -47,6 +47,7 @@ def rays() -> Explorer:
             "along a wall": {"x": 0.42, "y": -0.03, "reach": 0.5, "beams": 360},
             "inside a shape": {"x": 0.2, "y": -0.18, "reach": 0.5},
         },
+        diagram=draw_diagram,
     )
 
 
@@ -82,7 +83,7 @@ def _says(beams: int, n: int, ranges: NDArray[np.float64], reach: float, noise: 
     return f"{n} of {beams} beams meet an outline within {reach:g} m, with noise of {noise:g} mm{near}."
 
 
-def diagram() -> Picture:
+def draw_diagram() -> Picture:
     """Return the drawing behind the lesson's formula: where the beam q + t u meets the wall a + s (b - a)."""
     q, u, a, b = np.array([[0.05, 0.05], [0.8, 0.6], [0.19, 0.33], [0.44, 0.08]])
     t, s = np.linalg.solve(np.column_stack([u, a - b]), a - q)  # q + t u = a + s (b - a)

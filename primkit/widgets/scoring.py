@@ -18,8 +18,8 @@ from ..arguments import ROUNDING, Floats
 from ..evaluation import CENTER_WEIGHT, GATE, SHAPE_WEIGHT
 from ..formats import paper_suite
 from ..lidar import Lidar
+from ..palette import BLUE, GREY, INK, PALE, SKY, VERMILION
 from ..pipeline import PAPER, ROBUST
-from ..plots.look import BLUE, GREY, INK, PALE, SKY, VERMILION
 from ..study import Experiment, Row, perform
 from ..world import World
 from .drawing import Frame, picture, side_by_side
@@ -67,6 +67,7 @@ def scoring() -> Explorer:
             "only the shape counts": {"shape": 1.0, "noise": 5, "board": "4-01"},
             "only dimensions count": {"shape": 0.0, "center": 0.0, "tolerance": 1.0, "noise": 10, "board": "4-10"},
         },
+        diagram=draw_diagram,
     )
 
 
@@ -156,7 +157,7 @@ def _bar_of(weights: Weights) -> str:
     return "".join(parts)
 
 
-def diagram() -> Picture:
+def draw_diagram() -> Picture:
     """Return the drawing behind one-to-one matching: in list order the first found shape takes another's place."""
     (one, _), (left, two) = 1000 * np.hypot(*(FOUND[:, None] - TRUE).T).T  # mm from each found to each true centre
     beyond = f"found 2 to true A: {left:.0f} mm, beyond the gate of {1000 * GATE:.0f} mm"

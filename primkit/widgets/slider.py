@@ -140,9 +140,13 @@ class Explorer:
     """
 
     def __init__(
-        self, draw: Draw, controls: Sequence[Control], settings: Mapping[str, Mapping[str, Any]] | None = None
+        self,
+        draw: Draw,
+        controls: Sequence[Control],
+        settings: Mapping[str, Mapping[str, Any]] | None = None,
+        diagram: Callable[[], Picture] | None = None,
     ) -> None:
-        self.function, self.controls = draw, tuple(controls)
+        self.function, self.controls, self._diagram = draw, tuple(controls), diagram
         self.start = {control.name: control.start for control in self.controls}
         self.settings = {name: self._complete(name, values) for name, values in (settings or {}).items()}
         self.failure: Exception | None = None
@@ -161,6 +165,12 @@ class Explorer:
         if not pictures:
             raise ValueError("a twin needs named settings, got none")
         return Picture(side_by_side(pictures, list(self.settings)), f"{self!r}, its named settings")
+
+    def diagram(self) -> Picture:
+        """Return the drawing behind the lesson's formula."""
+        if self._diagram is None:
+            raise ValueError(f"a diagram must be given to explore, got none for {self!r}")
+        return self._diagram()
 
     @cached_property
     def panel(self) -> Any:
@@ -243,7 +253,12 @@ class Explorer:
         return "Slider: " + ", ".join(control.label or control.name for control in self.controls)
 
 
-def explore(draw: Draw, *controls: Control, settings: Mapping[str, Mapping[str, Any]] | None = None) -> Explorer:
+def explore(
+    draw: Draw,
+    *controls: Control,
+    settings: Mapping[str, Mapping[str, Any]] | None = None,
+    diagram: Callable[[], Picture] | None = None,
+) -> Explorer:
     """Return a picture with controls.
 
     Parameters
@@ -255,13 +270,15 @@ def explore(draw: Draw, *controls: Control, settings: Mapping[str, Mapping[str, 
         What can be moved.
     settings : mapping of str to mapping
         Values worth looking at, by name; a control that is not named keeps its start.
+    diagram : callable, optional
+        Returns the drawing behind the lesson's formula, in which nothing moves.
 
     Raises
     ------
     ValueError
         If a setting names a control that is not there, or a value that it does not hold.
     """
-    return Explorer(draw, controls, settings)
+    return Explorer(draw, controls, settings, diagram)
 
 
 def _named(control: Control) -> dict[str, Any]:

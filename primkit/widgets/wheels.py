@@ -14,7 +14,7 @@ from functools import cache
 import numpy as np
 
 from ..arguments import Floats
-from ..plots.look import BLUE, GREY, INK, ORANGE, PALE, VERMILION
+from ..palette import BLUE, GREY, INK, ORANGE, PALE, VERMILION
 from ..robot import AXLE, WHEEL, moved
 from .drawing import Frame, board_frame, picture
 from .slider import Explorer, Picture, Slider, explore
@@ -42,6 +42,7 @@ def wheels() -> Explorer:
             "one piece": {"left": 3.5, "right": 4.5, "pieces": 1},
             "backwards": {"left": -5.0, "right": -3.0, "pieces": 12},
         },
+        diagram=draw_diagram,
     )
 
 
@@ -123,7 +124,7 @@ def _where(left: float, right: float, radius: float, turn: float, seconds: float
     return f"it turns by {np.degrees(turn):.0f} degrees on a circle of radius {1000 * abs(radius):.0f} mm"
 
 
-def diagram() -> Picture:
+def draw_diagram() -> Picture:
     """Return the drawing behind the lesson's formula: the arc, its chord, and the heading midway."""
     frame = Frame((-0.02, 0.24), (-0.02, 0.17), width=603, height=470)
     pose, radius, turn = np.array([0.2, 0.0, np.pi / 2]), 0.16, np.radians(65)

@@ -14,10 +14,10 @@ import os
 
 from ...formats import load_world
 from ...world import World
+from .. import DEMONSTRATION
 from ..personal import personal_world
 
 TRUTH_VARIABLE = "PRIMKIT_TRUTH"
-DEMONSTRATION = ("demonstration", "the salt of the demonstration")  # known to everybody
 
 
 def personal_truth() -> World:

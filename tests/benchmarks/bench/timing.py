@@ -16,22 +16,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from primkit.plots.look import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    INK,
-    ORANGE,
-    PALE,
-    PURPLE,
-    SKY,
-    VERMILION,
-    as_axes,
-    letters,
-    marks,
-    set_title,
-)
+from primkit.palette import BLACK, BLUE, GREEN, GREY, INK, ORANGE, PALE, PURPLE, SKY, VERMILION
+from primkit.plots.look import as_axes, letters, marks, set_title
 from primkit.plots.story import Picture
 
 Curve = tuple[Sequence[float], Sequence[float]]
