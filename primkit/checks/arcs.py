@@ -22,9 +22,9 @@ from ..arguments import Floats
 from ..circles import fit_circle as library_fit
 from ..shapes import Circle
 from . import judges
-from .answer import Case, Check, Fault
+from .answer import Case, Check, Fault, off_only_where
 from .cases import RANDOM_CASES, Args, around
-from .judges import as_circle, shown
+from .judges import as_circle, is_pair, shown
 
 XYR = tuple[float, float, float]
 
@@ -54,7 +54,7 @@ _same_circle = judges.circle()
 
 def _as_good(got: Any, expected: Any, args: Args) -> str | None:
     """Judge a circle: the expected one, or one that lies as near to the points as Kasa's or Pratt's."""
-    if isinstance(got, Circle) or (isinstance(got, (tuple, list)) and len(got) == 2):  # the lesson goes on with three
+    if isinstance(got, Circle) or is_pair(got):  # the lesson goes on with three
         return f"got {shown(got)}, expected three numbers: x, y and radius in metres"
     off = _same_circle(got, expected, args)
     mine, reference = as_circle(got), kasa(args[0])
@@ -139,11 +139,6 @@ def _root_of_k(cases: list[Case]) -> bool:
     return True
 
 
-def _circle_for_none(cases: list[Case]) -> bool:
-    """Tell whether all circles are right, and something came back where there is none."""
-    return all(case.off is None for case in cases if case.expected is not None)
-
-
 _TWICE = "The centre is twice as far out as it is: the equation has 2 a x and 2 b y in it, not a x and b y."
 
 fit_circle = Check(
@@ -152,7 +147,10 @@ fit_circle = Check(
     _fit_cases,
     _as_good,
     (
-        Fault("Every circle is right. Where the points fix none, return None: see the rank.", when=_circle_for_none),
+        Fault(
+            "Every circle is right. Where the points fix none, return None: see the rank.",
+            when=off_only_where(lambda case: case.expected is None),
+        ),
         Fault("The mean of the points is the centre only when they lie all around it.", when=_gives(_by_mean)),
         Fault("The last number of the solution is k, and k = r² - a² - b²: it is not r² yet.", when=_root_of_k),
         Fault(

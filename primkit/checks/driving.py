@@ -23,7 +23,7 @@ import numpy as np
 from ..arguments import Floats
 from ..robot import AXLE, FASTEST, WHEEL, moved
 from . import judges
-from .answer import Case, Check, Fault
+from .answer import Case, Check, Fault, off_only_where
 from .cases import RANDOM_CASES, Args, around
 
 Pose = tuple[float, float, float]
@@ -100,11 +100,6 @@ def _after(fixed: float) -> Callable[..., Floats]:
     return lambda pose, left, right, _seconds: pose_after(pose, left, right, fixed)
 
 
-def _only_straight_is_off(cases: list[Case]) -> bool:
-    """Tell whether all is right but where both wheels turn equally fast."""
-    return all(case.args[1] == case.args[2] for case in cases if case.off is not None)
-
-
 def _pieces(cases: list[Case]) -> bool:
     """Tell whether straight ways and headings are right, and arcs end beside the right place, but not far from it."""
     for case in cases:
@@ -119,11 +114,6 @@ def _pieces(cases: list[Case]) -> bool:
     return True
 
 
-def _heading_stays(cases: list[Case]) -> bool:
-    """Tell whether the places are right and the headings are the old ones."""
-    return all(_same_pose(case.got, [*case.expected[:2], case.args[0][2]], case.args) is None for case in cases)
-
-
 drive_step = Check(
     "drive_step",
     pose_after,
@@ -132,7 +122,7 @@ drive_step = Check(
     (
         Fault(
             "Every arc is right. When both wheels turn equally fast, w is 0 and there is no circle: go straight on.",
-            when=_only_straight_is_off,
+            when=off_only_where(lambda case: case.args[1] == case.args[2]),
             name="w of zero",
         ),
         Fault(
@@ -173,7 +163,10 @@ drive_step = Check(
             like=lambda pose, *others: np.asarray(pose) + pose_after((0.0, 0.0, 0.0), *others),
             name="not turned by the old heading",
         ),
-        Fault("The place is right, the heading is the old one: add the turn.", when=_heading_stays),
+        Fault(
+            "The place is right, the heading is the old one: add the turn.",
+            like=lambda pose, *others: [*pose_after(pose, *others)[:2], pose[2]],
+        ),
         *(
             Fault(
                 "That is the pose after a fixed time: multiply by the time that is given.",
@@ -245,18 +238,16 @@ def _pairs(outline: Floats, points: Floats, reach: float) -> float:
     return float(near.mean()) if near.size else 0.0
 
 
-def _empty_is_off(cases: list[Case]) -> bool:
-    """Tell whether all is right but where there are no points."""
-    return all(len(case.args[1]) == 0 for case in cases if case.off is not None)
-
-
 share_seen = Check(
     "share_seen",
     seen,
     _drawn_outlines,
     judges.number(),
     (
-        Fault("Everything is right but this: of an outline without any points nothing is seen, 0.", when=_empty_is_off),
+        Fault(
+            "Everything is right but this: of an outline without any points nothing is seen, 0.",
+            when=off_only_where(lambda case: len(case.args[1]) == 0),
+        ),
         Fault(
             "That is the share of points near the outline: ask for each place of the outline instead.",
             like=_per_point,

@@ -20,9 +20,9 @@ from ..arguments import ROUNDING, Bools, Floats
 from ..lines import LINE
 from ..lines import fit_line as best_fit
 from ..ransac import run_ransac
-from .answer import Case, Check, Fault
+from .answer import Case, Check, Fault, off_only_where
 from .cases import Args
-from .judges import CLOSE, as_line, line, no_return, shown
+from .judges import CLOSE, as_line, is_pair, line, no_return, shown
 from .walls import bands, clouds, pairs, scenes
 
 Pair = tuple[float, float]  # angle and offset of a line
@@ -91,7 +91,7 @@ def _judge_consensus(got: Any, expected: Any, args: Args) -> str | None:
     wanted = "None" if expected is None else "a line (angle, offset) and True or False for each point"
     if expected is None or got is None:
         return None if got is expected else f"got {shown(got)}, expected {wanted}{no_return(got)}"
-    pair = got if isinstance(got, (tuple, list)) and len(got) == 2 else (None, None)
+    pair = got if is_pair(got) else (None, None)
     own, mask = as_line(pair[0]), _mask(pair[1], len(points))
     if own is None or mask is None or not np.isfinite(own).all():
         return f"got {shown(got)}, expected {wanted}"
@@ -142,25 +142,10 @@ def _near_with(distance: Any) -> Any:
     return lambda points, line, threshold: distance(points, *(as_line(line) or line)) <= threshold + ROUNDING
 
 
-def _without_a_line(cases: list[Case]) -> bool:
-    """Tell whether nothing is off but what fixes no line."""
-    return all(case.expected is None for case in cases if case.off)
-
-
 def _offset_first(cases: list[Case]) -> bool:
     """Tell whether the two numbers of each line came back in the other order."""
     turned = [(mine and mine[::-1], case) for case in cases for mine in [as_line(case.got)]]
     return all(line()(mine, case.expected, case.args) is None for mine, case in turned)
-
-
-def _upright(cases: list[Case]) -> bool:
-    """Tell whether nothing is off but pairs one above the other, doubled points included."""
-    return all(case.args[0][0] == case.args[1][0] for case in cases if case.off)
-
-
-def _as_a_number(cases: list[Case]) -> bool:
-    """Tell whether the inliers were counted."""
-    return all(isinstance(case.got, (int, np.integer)) and case.got == case.expected.sum() for case in cases)
 
 
 def _as_indices(cases: list[Case]) -> bool:
@@ -195,6 +180,9 @@ def _by_svd(row: int, *, centred: bool = True, columns: bool = False) -> Any:
     return fit
 
 
+_NO_LINE = off_only_where(lambda case: case.expected is None)
+
+
 def _told(words: str) -> Any:
     """Return a predicate: some case was judged with these words."""
     return lambda cases: any(words in (case.off or "") for case in cases)
@@ -206,8 +194,11 @@ line_through = Check(
     pairs,
     line(),
     (
-        Fault("Twice the same point fixes no line: return None before anything is divided.", when=_without_a_line),
-        Fault("Upright lines come out wrong: is something divided by a difference in x?", when=_upright),
+        Fault("Twice the same point fixes no line: return None before anything is divided.", when=_NO_LINE),
+        Fault(
+            "Upright lines come out wrong: is something divided by a difference in x?",
+            when=off_only_where(lambda case: case.args[0][0] == case.args[1][0]),
+        ),
         Fault("That is the bearing of the line itself: its normal is a quarter turn away.", like=_through_with(_along)),
         Fault(
             "The offset has a sign: it belongs to the normal that you return.",
@@ -239,7 +230,12 @@ inliers_of = Check(
     bands,
     _judge_mask,
     (
-        Fault("That is how many they are: asked for is True or False for each point.", when=_as_a_number),
+        Fault(
+            "That is how many they are: asked for is True or False for each point.",
+            when=off_only_where(
+                lambda case: isinstance(case.got, (int, np.integer)) and case.got == case.expected.sum()
+            ),
+        ),
         Fault("Those are the numbers of the inliers: asked for is True or False for each point.", when=_as_indices),
         Fault(
             "A point exactly on the boundary is an inlier: < or <= ?",
@@ -269,7 +265,7 @@ fit_line = Check(
     clouds,
     line(),
     (
-        Fault("Fewer than two different points fix no line: return None.", when=_without_a_line),
+        Fault("Fewer than two different points fix no line: return None.", when=_NO_LINE),
         Fault("That fits y = a x + b: it measures along y, and upright walls fail.", when=_least_squares_in_y),
         Fault("That is the direction of most scatter, along the wall: the normal is across.", like=_by_svd(0)),
         Fault("The directions are the rows of what svd returns, not its columns.", like=_by_svd(1, columns=True)),
@@ -283,7 +279,7 @@ ransac_line = Check(
     scenes,
     _judge_consensus,
     (
-        Fault("Where no two points differ there is no line: return None.", when=_without_a_line),
+        Fault("Where no two points differ there is no line: return None.", when=_NO_LINE),
         Fault("Inliers belong to the line that is returned: take them anew after the refit.", when=_told(NOT_ITS_OWN)),
         Fault("Far fewer inliers than possible: is the best trial kept, or the first, or the last?", when=_told(FEW)),
         Fault("The line still goes through its two points: fit it to all its inliers.", when=_told(NOT_REFITTED)),

@@ -19,9 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import Floats
-from .answer import Case, Check, Fault
+from .answer import Case, Check, Fault, off_only_where
 from .cases import Args, around, random_cases
-from .judges import array, no_return, number, shown
+from .judges import array, is_pair, no_return, number, shown
 
 Pair = tuple[float, float]
 
@@ -57,7 +57,11 @@ def measured(corners: Floats) -> tuple[Floats, Floats]:
 
 def cheapest(squares: Floats, numbers: NDArray[np.int64], n_points: int, spread: float) -> tuple[int, float]:
     """Return which candidate costs least, and its margin: how much more the next one costs (inf without one)."""
-    return _chosen(np.asarray(squares) / spread**2 + np.asarray(numbers) * np.log(n_points))
+    return _chosen(_costs(squares, numbers, n_points, spread))
+
+
+def _costs(squares: Floats, numbers: NDArray[np.int64], n_points: int, spread: float) -> Floats:
+    return np.asarray(squares) / spread**2 + np.asarray(numbers) * np.log(n_points)
 
 
 def _chosen(costs: Floats) -> tuple[int, float]:
@@ -100,16 +104,6 @@ def _with(change: Callable[[Pair], Pair], sign: float = 1.0) -> Callable[[Pair, 
     return lambda a, b: None if (found := meet_in(change(a), change(b))) is None else sign * found
 
 
-def _parallel_alone(cases: list[Case]) -> bool:
-    """Tell whether parallel lines, and nothing else, came out wrong."""
-    return all((case.expected is None) == (case.off is not None) or case.expected is None for case in cases)
-
-
-def _opposite_alone(cases: list[Case]) -> bool:
-    """Tell whether parallel lines with opposite normals, and nothing else, came out wrong."""
-    return all(case.off is None or (case.expected is None and case.args[0][0] != case.args[1][0]) for case in cases)
-
-
 _OF_THE_NORMAL = "The angle is that of the normal, which stands square on the line; it is not the line's own direction."
 
 meet = Check(
@@ -120,9 +114,12 @@ meet = Check(
     (
         Fault(
             "Right but for parallel lines with opposite normals: sin(pi) is 1e-16 on a computer, and not 0.",
-            when=_opposite_alone,
+            when=off_only_where(lambda case: case.expected is None and case.args[0][0] != case.args[1][0]),
         ),
-        Fault("Every corner is right. Parallel lines have none: return None for them.", when=_parallel_alone),
+        Fault(
+            "Every corner is right. Parallel lines have none: return None for them.",
+            when=off_only_where(lambda case: case.expected is None),
+        ),
         Fault(_OF_THE_NORMAL, like=_with(lambda line: (line[0] + np.pi / 2, line[1]))),
         Fault(_OF_THE_NORMAL, like=_with(lambda line: (line[0] - np.pi / 2, line[1]))),
         Fault(
@@ -160,7 +157,7 @@ def _corner_cases(rng: np.random.Generator) -> Iterator[Args]:
 
 def _judge_measured(got: Any, expected: Any, args: Args) -> str | None:
     """Judge the lengths of the sides, then the centre."""
-    if not isinstance(got, (tuple, list)) or len(got) != 2:
+    if not is_pair(got):
         return f"got {shown(got)}, expected two things: the sides and the centre{no_return(got)}"
     for name, mine, wanted in zip(("sides", "centre"), got, expected, strict=True):
         off = array("m")(mine, wanted, args)
@@ -180,10 +177,6 @@ def _of_outline(corners: Floats) -> Floats:
     return (corners + after).T @ sides / (2 * sides.sum())
 
 
-def _of_extents(corners: Floats) -> Floats:
-    return (corners.min(axis=0) + corners.max(axis=0)) / 2
-
-
 def _unsigned(corners: Floats) -> Floats:
     """Return the centre with the area's sign forgotten: from the origin the wrong way when clockwise."""
     (x, y), (u, v) = corners.T, np.roll(corners, -1, axis=0).T
@@ -192,10 +185,7 @@ def _unsigned(corners: Floats) -> Floats:
 
 def _one_side_short(cases: list[Case]) -> bool:
     """Tell whether in every case one side is missing."""
-    return all(
-        isinstance(case.got, (tuple, list)) and len(case.got) == 2 and np.shape(case.got[0]) == (len(case.args[0]) - 1,)
-        for case in cases
-    )
+    return all(is_pair(case.got) and np.shape(case.got[0]) == (len(case.args[0]) - 1,) for case in cases)
 
 
 sides_and_centroid = Check(
@@ -223,7 +213,7 @@ sides_and_centroid = Check(
         ),
         Fault(
             "The sides are right. That centre is the middle of the extents, which changes when the shape turns.",
-            like=_centred(_of_extents),
+            like=_centred(lambda corners: (corners.min(axis=0) + corners.max(axis=0)) / 2),
         ),
         Fault(
             "Right where the corners go counter-clockwise. Clockwise the area comes out negative, and so do the "
@@ -262,7 +252,7 @@ def _choice_cases(rng: np.random.Generator) -> Iterator[Args]:
 
 def _judge_choice(got: Any, expected: Any, args: Args) -> str | None:
     """Judge which candidate was chosen, then the margin."""
-    if not isinstance(got, (tuple, list)) or len(got) != 2:
+    if not is_pair(got):
         return f"got {shown(got)}, expected two things: the number of the best candidate and its margin{no_return(got)}"
     off = number()(got[0], expected[0], args)
     if off is not None:
@@ -276,16 +266,6 @@ def _priced(cost: Callable[[Floats, Any, int, float], Floats]) -> Callable[..., 
     return lambda squares, numbers, n_points, spread: _chosen(cost(squares, numbers, n_points, spread))
 
 
-def _margin_to_last(squares: Floats, numbers: Any, n_points: int, spread: float) -> tuple[int, float]:
-    costs = squares / spread**2 + numbers * np.log(n_points)
-    return int(np.argmin(costs)), float(costs.max() - costs.min()) if len(costs) > 1 else np.inf
-
-
-def _alone(cases: list[Case]) -> bool:
-    """Tell whether only the candidate without a rival came out wrong."""
-    return all(case.off is None or len(case.args[0]) == 1 for case in cases)
-
-
 fair_choice = Check(
     "fair_choice",
     cheapest,
@@ -293,7 +273,8 @@ fair_choice = Check(
     _judge_choice,
     (
         Fault(
-            "Right wherever there is a rival. Without one nothing comes near: the margin is float('inf').", when=_alone
+            "Right wherever there is a rival. Without one nothing comes near: the margin is float('inf').",
+            when=off_only_where(lambda case: len(case.args[0]) == 1),
         ),
         Fault(
             "That is the choice by misfit alone: what does a candidate pay for its numbers?",
@@ -321,7 +302,7 @@ fair_choice = Check(
         ),
         Fault(
             "The choice is right. The margin is measured to the worst candidate, not to the next best.",
-            like=_margin_to_last,
+            like=lambda *args: (cheapest(*args)[0], float(np.ptp(_costs(*args))) if len(args[0]) > 1 else np.inf),
         ),
     ),
 )
