@@ -389,7 +389,7 @@ def test_a_hidden_test_without_its_number_has_no_points(tmp_path):
     notebook = nbformat.v4.new_notebook(cells=cells)
     execute = CarefulExecute(course=str(tmp_path))
     execute.faults = []
-    execute._numbers_only(notebook)
+    execute._fail_without_points(notebook)
     failed = [any(output.output_type == "error" for output in each.outputs) for each in notebook.cells]
     assert failed == [False, True, True, True]
 

@@ -94,8 +94,8 @@ class Fault:
     ----------
     says : str
         What the student is told: a hint at the reason, not the solution.
-    like : callable, optional
-        The faulty algorithm: a student's function that returns the same in every case has this fault.
+    like : callable or tuple of callable, optional
+        The faulty algorithm, or several: a student's function that returns the same in every case has this fault.
     when : callable, optional
         Looks at all cases instead (a list of ``Case``), and tells whether they show this fault.
     name : str, optional
@@ -103,7 +103,7 @@ class Fault:
     """
 
     says: str
-    like: Callable[..., Any] | None = None
+    like: Callable[..., Any] | tuple[Callable[..., Any], ...] = ()
     when: Callable[[list[Case]], bool] | None = None
     name: str = ""
 
@@ -156,8 +156,8 @@ class Check:
                 if not cases and isinstance(error, NotImplementedError):  # the stub of a problem set
                     return Answer("not attempted", f"{self.name} still raises NotImplementedError.")
                 kind = type(error).__name__
-                says = f"{self._call(args)} raised {kind}: {error}"
-                if isinstance(error, TypeError) and not _takes(mine, given):
+                says = f"{self._write_call(args)} raised {kind}: {error}"
+                if isinstance(error, TypeError) and not _accepts(mine, given):
                     names = ", ".join(inspect.signature(self.reference).parameters)
                     says += f"\nKeep the arguments that are given: {self.name}({names})."
                     return Answer("error", says, "asks for other arguments")
@@ -165,38 +165,42 @@ class Check:
             if not cases and (got is ... or (isinstance(got, Sequence) and any(part is ... for part in got))):
                 return Answer("not attempted", f"{self.name} still returns `...`.")
             if not same(given, args):
-                says = f"{self._call(args)} changes what it is given: work on a copy."
+                says = f"{self._write_call(args)} changes what it is given: work on a copy."
                 return Answer("wrong", says, "changes its arguments")
             expected = self.reference(*copy.deepcopy(args))
             cases.append(Case(args, got, expected, self.judge(got, expected, args)))
-        return self._judged(cases)
+        return self._decide(cases)
 
     def yours_or_ours(self, mine: Callable[..., Any]) -> Step:
         """Return the student's function where it is right, and the reference where it is not; print it to see which."""
         answer = self(mine)
         return Step(self.name, mine if answer.right else self.reference, answer)
 
-    def _judged(self, cases: list[Case]) -> Answer:
+    def _decide(self, cases: list[Case]) -> Answer:
         """Return the answer for results that all came without an error."""
         wrong = [case for case in cases if case.off is not None]
         if not wrong:
             return Answer("right", f"{self.name} passes all {len(cases)} cases.")
         fault = next((fault for fault in self.faults if self._has(fault, cases)), None)
         first = wrong[0]
-        says = f"in {len(wrong)} of {len(cases)} cases. For example {self._call(first.args)}: {first.off}."
+        says = f"in {len(wrong)} of {len(cases)} cases. For example {self._write_call(first.args)}: {first.off}."
         return Answer("wrong", says) if fault is None else Answer("wrong", f"{says}\n{fault.says}", fault.called)
 
     def _has(self, fault: Fault, cases: list[Case]) -> bool:
         """Tell whether the results show a fault."""
         if fault.when is not None:
             return fault.when(cases)
-        assert fault.like is not None  # a fault has one of the two
+        ways = fault.like if isinstance(fault.like, tuple) else (fault.like,)
+        return any(self._goes_like(way, cases) for way in ways)
+
+    def _goes_like(self, way: Callable[..., Any], cases: list[Case]) -> bool:
+        """Tell whether the results are those of a faulty algorithm."""
         try:
-            return all(self.judge(c.got, _quietly(fault.like, copy.deepcopy(c.args)), c.args) is None for c in cases)
-        except Exception:  # the faulty way cannot do every case: then it is not what the student did
+            return all(self.judge(c.got, _quietly(way, copy.deepcopy(c.args)), c.args) is None for c in cases)
+        except Exception:  # it cannot do every case: then it is not what the student did
             return False
 
-    def _call(self, args: Args) -> str:
+    def _write_call(self, args: Args) -> str:
         """Write a call as a student would."""
         names = list(inspect.signature(self.reference).parameters)
         return f"{self.name}({', '.join(f'{name}={shown(arg)}' for name, arg in zip(names, args, strict=False))})"
@@ -225,7 +229,7 @@ def _quietly(function: Callable[..., Any], args: Args) -> Any:
         return function(*args)
 
 
-def _takes(function: Callable[..., Any], args: Args) -> bool:
+def _accepts(function: Callable[..., Any], args: Args) -> bool:
     """Tell whether a function can be called with these arguments, in this order."""
     try:
         inspect.signature(function).bind(*args)

@@ -174,16 +174,16 @@ def _from_residuals(number: Callable[[Floats], Any]) -> Callable[[Floats, Floats
     return lambda *args: float(number(_residuals(*args)))
 
 
-_CANCEL = "Residuals outside and inside cancel each other: square them first."
-
 circle_rms = Check(
     "circle_rms",
     rms,
     _rms_cases,
     judges.number("m"),
     (
-        Fault(_CANCEL, like=_from_residuals(np.mean)),
-        Fault(_CANCEL, like=_from_residuals(lambda e: abs(np.mean(e)))),
+        Fault(
+            "Residuals outside and inside cancel each other: square them first.",
+            like=(_from_residuals(np.mean), _from_residuals(lambda e: abs(np.mean(e)))),
+        ),
         Fault("That is in square metres: is a root missing?", like=_from_residuals(lambda e: np.mean(e**2))),
         Fault("More points make it larger: mean, not sum.", like=_from_residuals(lambda e: np.sqrt(np.sum(e**2)))),
         Fault(

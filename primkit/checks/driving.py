@@ -95,11 +95,6 @@ def _speeds(change: Callable[[float, float], tuple[float, float]]) -> Callable[.
     return step
 
 
-def _after(fixed: float) -> Callable[..., Floats]:
-    """Return a faulty step: the right one for a fixed time."""
-    return lambda pose, left, right, _seconds: pose_after(pose, left, right, fixed)
-
-
 def _pieces(cases: list[Case]) -> bool:
     """Tell whether straight ways and headings are right, and arcs end beside the right place, but not far from it."""
     for case in cases:
@@ -167,13 +162,13 @@ drive_step = Check(
             "The place is right, the heading is the old one: add the turn.",
             like=lambda pose, *others: [*pose_after(pose, *others)[:2], pose[2]],
         ),
-        *(
-            Fault(
-                "That is the pose after a fixed time: multiply by the time that is given.",
-                like=_after(fixed),
-                name="time left out",
-            )
-            for fixed in (1.0, 0.1)
+        Fault(
+            "That is the pose after a fixed time: multiply by the time that is given.",
+            like=(
+                lambda pose, left, right, _seconds: pose_after(pose, left, right, 1.0),
+                lambda pose, left, right, _seconds: pose_after(pose, left, right, 0.1),
+            ),
+            name="time left out",
         ),
         Fault(
             "The place is right, the heading is in degrees: radians are asked for.",

@@ -47,7 +47,7 @@ def near(points: Floats, line: Any, threshold: float) -> Bools:
     return inside
 
 
-def fitted(points: Floats) -> Pair | None:
+def fit_best(points: Floats) -> Pair | None:
     """Return the line with the least squared distances; None for fewer than two different points."""
     return as_line(best_fit(points))
 
@@ -86,7 +86,7 @@ NOT_ITS_OWN, NOT_REFITTED, FEW = "not those within the threshold of the line", "
 
 
 def _judge_consensus(got: Any, expected: Any, args: Args) -> str | None:
-    """Judge a line and its inliers against the points: they must agree, be many, and be fitted."""
+    """Judge a line and its inliers against the points: they must agree, be many, and be fit_best."""
     points, threshold = args[0], args[1]
     wanted = "None" if expected is None else "a line (angle, offset) and True or False for each point"
     if expected is None or got is None:
@@ -102,7 +102,7 @@ def _judge_consensus(got: Any, expected: Any, args: Args) -> str | None:
     most = int(expected[1].sum())
     if mask.sum() < LEAST_INLIERS * most:
         return f"{FEW} {int(mask.sum())} inliers, expected about {most}"
-    best = fitted(points[mask]) or own  # so many inliers always fix a line
+    best = fit_best(points[mask]) or own  # so many inliers always fix a line
     off = float(np.abs(_apart(points[mask], best, own)).max())
     # Only a sample goes exactly through two points; it may stay where a refit would lose inliers.
     sampled = off > CLOSE and (distance <= CLOSE).sum() >= 2 and near(points, best, threshold).sum() >= mask.sum()
@@ -171,7 +171,7 @@ def _by_svd(row: int, *, centred: bool = True, columns: bool = False) -> Any:
     """Return a fit that takes the wrong direction, forgets to centre, or reads columns for rows."""
 
     def fit(points: Floats) -> Pair | None:
-        if fitted(points) is None:
+        if fit_best(points) is None:
             return None
         directions = np.linalg.svd(points - points.mean(axis=0) * centred)[2]
         normal = (directions.T if columns else directions)[row]
@@ -183,7 +183,7 @@ def _by_svd(row: int, *, centred: bool = True, columns: bool = False) -> Any:
 _NO_LINE = off_only_where(lambda case: case.expected is None)
 
 
-def _told(words: str) -> Any:
+def _judged_with(words: str) -> Any:
     """Return a predicate: some case was judged with these words."""
     return lambda cases: any(words in (case.off or "") for case in cases)
 
@@ -261,7 +261,7 @@ inliers_of = Check(
 
 fit_line = Check(
     "fit_line",
-    fitted,
+    fit_best,
     clouds,
     line(),
     (
@@ -280,8 +280,16 @@ ransac_line = Check(
     _judge_consensus,
     (
         Fault("Where no two points differ there is no line: return None.", when=_NO_LINE),
-        Fault("Inliers belong to the line that is returned: take them anew after the refit.", when=_told(NOT_ITS_OWN)),
-        Fault("Far fewer inliers than possible: is the best trial kept, or the first, or the last?", when=_told(FEW)),
-        Fault("The line still goes through its two points: fit it to all its inliers.", when=_told(NOT_REFITTED)),
+        Fault(
+            "Inliers belong to the line that is returned: take them anew after the refit.",
+            when=_judged_with(NOT_ITS_OWN),
+        ),
+        Fault(
+            "Far fewer inliers than possible: is the best trial kept, or the first, or the last?",
+            when=_judged_with(FEW),
+        ),
+        Fault(
+            "The line still goes through its two points: fit it to all its inliers.", when=_judged_with(NOT_REFITTED)
+        ),
     ),
 )

@@ -184,11 +184,7 @@ ray_circle = Check(
         Fault("Circles behind the robot are hit too: is t >= 0 asked for?", like=_circle(lambda near, _far: near)),
         Fault(
             "From inside a circle the first root is negative and the second one counts.",
-            like=_circle(lambda near, _far: _ahead(near)),
-        ),
-        Fault(
-            "From inside a circle the first root is negative and the second one counts.",
-            like=_circle(lambda near, far: near if far >= 0 else INF),
+            like=(_circle(lambda near, _far: _ahead(near)), _circle(lambda near, far: near if far >= 0 else INF)),
         ),
         Fault(
             "That is the distance to the point nearest the centre: the outline comes half a chord earlier.",

@@ -147,19 +147,13 @@ match_shapes = Check(
             "The gate comes too late: a pair that it forbids has taken shapes that others could use.",
             like=lambda f, t, gate: [pair for pair in best_pairs(f, t, OPEN_GATE) if _distances(f, t)[pair] <= gate],
         ),
-        *(
-            Fault(
-                "Each takes its nearest, used or not: is a shape free once it stands in a pair?",
-                like=partial(_nearest, of=of),
-            )
-            for of in ("found", "true")
+        Fault(
+            "Each takes its nearest, used or not: is a shape free once it stands in a pair?",
+            like=(partial(_nearest, of="found"), partial(_nearest, of="true")),
         ),
-        *(
-            Fault(
-                "First come, first served: the order of a list must not decide who gets which.",
-                like=partial(_greedy, order=order),
-            )
-            for order in ("found", "true")
+        Fault(
+            "First come, first served: the order of a list must not decide who gets which.",
+            like=(partial(_greedy, order="found"), partial(_greedy, order="true")),
         ),
         Fault(
             "The closest pair first is greedy too: it can leave others far apart, or without a partner.",
