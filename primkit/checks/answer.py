@@ -100,12 +100,15 @@ class Fault:
         Looks at all cases instead (a list of ``Case``), and tells whether they show this fault.
     name : str, optional
         A few words for the overview of a class, such as ``"corner for centre"``; what it says when not given.
+    judge : callable, optional
+        Compares with ``like`` where that returns something of another form than was asked for.
     """
 
     says: str
     like: Callable[..., Any] | tuple[Callable[..., Any], ...] = ()
     when: Callable[[list[Case]], bool] | None = None
     name: str = ""
+    judge: Judge | None = None
 
     @property
     def called(self) -> str:
@@ -191,14 +194,7 @@ class Check:
         if fault.when is not None:
             return fault.when(cases)
         ways = fault.like if isinstance(fault.like, tuple) else (fault.like,)
-        return any(self._goes_like(way, cases) for way in ways)
-
-    def _goes_like(self, way: Callable[..., Any], cases: list[Case]) -> bool:
-        """Tell whether the results are those of a faulty algorithm."""
-        try:
-            return all(self.judge(c.got, _quietly(way, copy.deepcopy(c.args)), c.args) is None for c in cases)
-        except Exception:  # it cannot do every case: then it is not what the student did
-            return False
+        return any(_goes_like(way, cases, fault.judge or self.judge) for way in ways)
 
     def _write_call(self, args: Args) -> str:
         """Write a call as a student would."""
@@ -227,6 +223,14 @@ def _quietly(function: Callable[..., Any], args: Args) -> Any:
     with redirect_stdout(io.StringIO()), warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         return function(*args)
+
+
+def _goes_like(way: Callable[..., Any], cases: list[Case], judge: Judge) -> bool:
+    """Tell whether the results are those of a faulty algorithm."""
+    try:
+        return all(judge(c.got, _quietly(way, copy.deepcopy(c.args)), c.args) is None for c in cases)
+    except Exception:  # it cannot do every case: then it is not what the student did
+        return False
 
 
 def _accepts(function: Callable[..., Any], args: Args) -> bool:

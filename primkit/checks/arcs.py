@@ -99,9 +99,6 @@ def _rms_cases(rng: np.random.Generator) -> Iterator[Args]:
         yield points, center + rng.uniform(-0.02, 0.02, 2), radius * float(rng.uniform(0.8, 1.2))
 
 
-# --- usual faults -----------------------------------------------------------------------------------------------
-
-
 def _gives(wrong: Callable[[Floats], XYR | None]) -> Callable[[list[Case]], bool]:
     """Tell whether a faulty way gives the same circles; what comes for points that fix none is another fault."""
 

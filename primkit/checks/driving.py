@@ -71,9 +71,6 @@ def _drives(rng: np.random.Generator) -> Iterator[Args]:
         yield pose, left, left if n % 5 == 0 else right, float(rng.uniform(0.1, 3.0))
 
 
-# --- usual faults of a step --------------------------------------------------------------------------------------
-
-
 def _straight(share: float) -> Callable[..., Floats]:
     """Return a faulty step: the length of the arc straight on, in a heading ``share`` of the turn on from the old."""
 

@@ -22,7 +22,7 @@ from ..lines import fit_line as best_fit
 from ..ransac import run_ransac
 from .answer import Case, Check, Fault, off_only_where
 from .cases import Args
-from .judges import CLOSE, as_line, is_pair, line, no_return, shown
+from .judges import CLOSE, array, as_line, is_pair, line, no_return, number, shown
 from .walls import bands, clouds, pairs, scenes
 
 Pair = tuple[float, float]  # angle and offset of a line
@@ -59,9 +59,6 @@ def best_of(points: Floats, threshold: float, trials: int, rng: Any) -> tuple[Pa
         return None
     angle, offset = found.params.tolist()
     return (angle, offset), found.inliers
-
-
-# --- judges ----------------------------------------------------------------------------------------------------
 
 
 def _mask(value: Any, n: int) -> Bools | None:
@@ -118,9 +115,6 @@ def _apart(points: Floats, one: Pair, other: Pair) -> Floats:
     return apart
 
 
-# --- usual faults ----------------------------------------------------------------------------------------------
-
-
 def _through_with(change: Any) -> Any:
     """Return ``through`` with its angle and offset changed by one mistake."""
 
@@ -146,12 +140,6 @@ def _offset_first(cases: list[Case]) -> bool:
     """Tell whether the two numbers of each line came back in the other order."""
     turned = [(mine and mine[::-1], case) for case in cases for mine in [as_line(case.got)]]
     return all(line()(mine, case.expected, case.args) is None for mine, case in turned)
-
-
-def _as_indices(cases: list[Case]) -> bool:
-    """Tell whether the inliers' numbers came back, alone or in a tuple as ``np.nonzero`` gives them."""
-    alone = (case.got[0] if isinstance(case.got, tuple) and case.got else case.got for case in cases)
-    return all(shown(got) == shown(np.flatnonzero(c.expected)) for got, c in zip(alone, cases, strict=True))
 
 
 def _least_squares_in_y(cases: list[Case]) -> bool:
@@ -232,11 +220,14 @@ inliers_of = Check(
     (
         Fault(
             "That is how many they are: asked for is True or False for each point.",
-            when=off_only_where(
-                lambda case: isinstance(case.got, (int, np.integer)) and case.got == case.expected.sum()
-            ),
+            like=lambda *args: near(*args).sum(),
+            judge=number(),
         ),
-        Fault("Those are the numbers of the inliers: asked for is True or False for each point.", when=_as_indices),
+        Fault(
+            "Those are the numbers of the inliers: asked for is True or False for each point.",
+            like=(lambda *args: np.flatnonzero(near(*args)), lambda *args: np.nonzero(near(*args))),
+            judge=array(),
+        ),
         Fault(
             "A point exactly on the boundary is an inlier: < or <= ?",
             like=lambda points, line, threshold: near(points, line, threshold - 2 * ROUNDING),

@@ -217,7 +217,7 @@ def _floats(value: Any) -> NDArray[np.float64] | None:
 
 
 def _close(a: NDArray[np.float64], b: NDArray[np.float64], tolerance: float) -> bool:
-    return bool(np.allclose(a, b, rtol=0.0, atol=tolerance))
+    return bool(np.allclose(a, b, rtol=0.0, atol=tolerance, equal_nan=True))  # only a faulty way expects nan
 
 
 def no_return(got: Any) -> str:
