@@ -22,7 +22,6 @@ import shutil
 import signal
 import site
 import tempfile
-from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -202,7 +201,8 @@ class CarefulExecute(Execute):  # type: ignore[misc]
 
     def _restore_files(self, index: int, *, told: bool = False) -> None:
         """Put back what a cell has deleted or changed of the files it was given, and note it unless it is told."""
-        lost = [path for path in _files(self.given) if not _same(self.given / path, self.work / path)]
+        given = (path.relative_to(self.given) for path in sorted(self.given.rglob("*")) if path.is_file())
+        lost = [path for path in given if not _same(self.given / path, self.work / path)]
         if not lost:
             return
         whole = not self.work.is_dir()
@@ -211,7 +211,9 @@ class CarefulExecute(Execute):  # type: ignore[misc]
                 (self.work / path).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(self.given / path, self.work / path)
         if whole:
-            self._run_quietly(f"__import__('os').chdir({str(self.work)!r})")
+            with suppress(DeadKernelError, RuntimeError):
+                source = f"__import__('os').chdir({str(self.work)!r})"
+                self.wait_for_reply(self.kc.execute(source, silent=True, store_history=False))
         if told:
             return
         what = "the whole folder" if whole else ", ".join(sorted(map(str, lost)))
@@ -264,10 +266,6 @@ class CarefulExecute(Execute):  # type: ignore[misc]
                 if group != os.getpgid(0):
                     os.killpg(group, signal.SIGKILL)
 
-    def _run_quietly(self, source: str) -> None:
-        with suppress(DeadKernelError, RuntimeError):
-            self.wait_for_reply(self.kc.execute(source, silent=True, store_history=False))
-
     def output(self, outs: Any, msg: Any, display_id: Any, cell_index: int) -> Any:
         """Keep what a cell says, up to a limit: an endless loop may print all the time."""
         self.letters += len(str(msg["content"].get("text", "")))
@@ -291,10 +289,6 @@ def _environment(home: Path, course: str) -> dict[str, str]:
         "PYTHONDONTWRITEBYTECODE": "1",
         "NBGRADER_EXECUTION": "autograde",
     }
-
-
-def _files(folder: Path) -> Iterator[Path]:
-    return (path.relative_to(folder) for path in sorted(folder.rglob("*")) if path.is_file())
 
 
 def _same(given: Path, now: Path) -> bool:
