@@ -99,9 +99,8 @@ def overview(course: Course, name: str) -> Overview:
             for grade in (grade for notebook in submission.notebooks for grade in notebook.grades):
                 mark, error = cells[student].get(grade.cell.name, (None, None))
                 like = tasks.get(grade.cell.name)
-                line = lines.setdefault(
-                    (grade.cell.name, ""), Line(like["task"] if like else grade.cell.name, "", grade.max_score)
-                )
+                called = like["task"] if like else grade.cell.name
+                line = lines.setdefault((grade.cell.name, ""), Line(called, "", grade.max_score))
                 line.points.append(float(grade.score))
                 line.open += bool(grade.needs_manual_grade)
                 if like:
@@ -110,16 +109,9 @@ def overview(course: Course, name: str) -> Overview:
                     called, says = _name_error(grade.cell.name, *error)
                     line.wrong[called] += 1
                     wrong.append((student, grade.cell.name, "", called, says))
-    return Overview(
-        name,
-        len(course.submitted(name)),
-        len(scores),
-        of,
-        scores,
-        tuple(lines.values()),
-        (*strangers(course, name), *journal.faults()),
-        tuple(wrong),
-    )
+    faults = (*strangers(course, name), *journal.faults())
+    handed_in = len(course.submitted(name))
+    return Overview(name, handed_in, len(scores), of, scores, tuple(lines.values()), faults, tuple(wrong))
 
 
 def _add_parts(

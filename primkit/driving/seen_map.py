@@ -40,13 +40,7 @@ OUTLINE_STEP = 0.004  # m: outlines are looked at in steps of this length
 
 
 class SeenMap:
-    """What one robot knows of its board.
-
-    Parameters
-    ----------
-    size : float
-        Side of the board in metres; the robot knows where the board ends.
-    """
+    """What one robot knows of its board; it knows where the board, ``size`` metres wide, ends."""
 
     def __init__(self, size: float) -> None:
         self.size = size
