@@ -190,10 +190,7 @@ circle_rms = Check(
         Fault(
             "That is the mean of the distances; RMS squares them first.", like=_from_residuals(lambda e: abs(e).mean())
         ),
-        Fault(
-            "Those are distances to the centre: subtract the radius.",
-            like=lambda points, center, radius: rms(points, center, 0.0),  # noqa: ARG005 (that is the fault)
-        ),
+        Fault("Those are distances to the centre: subtract the radius.", like=lambda p, c, _r: rms(p, c, 0.0)),
         Fault(
             "That compares squared lengths, as Kasa's fit does: compare the lengths.",
             like=lambda p, c, r: np.sqrt(np.mean((((p - c) ** 2).sum(axis=1) - r**2) ** 2)),

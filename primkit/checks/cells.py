@@ -90,7 +90,7 @@ to_cells = Check(
         Fault("x and y have changed places: i counts along x.", like=_by(lambda place: np.floor(place)[:, ::-1])),
         Fault(
             "How many cells fit into that many metres? Divide by their size.",
-            like=lambda points, resolution: np.floor(points * resolution),
+            like=lambda points, size: np.floor(points * size),
         ),
     ),
 )

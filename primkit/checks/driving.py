@@ -188,7 +188,7 @@ drive_step = Check(
 # --- what was seen ----------------------------------------------------------------------------------------------
 
 
-def seen(outline: Floats, points: Floats, reach: float) -> float:
+def share_near(outline: Floats, points: Floats, reach: float) -> float:
     """Return the share of the outline's places that have a point within reach."""
     return float(np.mean(_nearest(outline, points) <= reach))
 
@@ -221,7 +221,7 @@ def _drawn_outlines(rng: np.random.Generator) -> Iterator[Args]:
 
 def _per_point(outline: Floats, points: Floats, reach: float) -> float:
     """Return the share of the points that lie near the outline."""
-    return seen(points, outline, reach) if len(points) else 0.0
+    return share_near(points, outline, reach) if len(points) else 0.0
 
 
 def _pairs(outline: Floats, points: Floats, reach: float) -> float:
@@ -232,7 +232,7 @@ def _pairs(outline: Floats, points: Floats, reach: float) -> float:
 
 share_seen = Check(
     "share_seen",
-    seen,
+    share_near,
     _drawn_outlines,
     judges.number(),
     (
@@ -257,20 +257,17 @@ share_seen = Check(
         ),
         Fault(
             "The squared distance is compared with the reach: is a root missing?",
-            like=lambda o, p, reach: seen(o, p, reach**0.5),
+            like=lambda o, p, reach: share_near(o, p, reach**0.5),
         ),
         Fault(
             "That is how many, not which share: divide by the number of places.",
-            like=lambda outline, points, reach: seen(outline, points, reach) * len(outline),
+            like=lambda *args: share_near(*args) * len(args[0]),
             name="a count for a share",
         ),
-        Fault(
-            "That is per cent: a share goes from 0 to 1.",
-            like=lambda outline, points, reach: 100 * seen(outline, points, reach),
-        ),
+        Fault("That is per cent: a share goes from 0 to 1.", like=lambda *args: 100 * share_near(*args)),
         Fault(
             "That is the part that was missed: 1 minus what is asked for.",
-            like=lambda outline, points, reach: 1 - seen(outline, points, reach),
+            like=lambda *args: 1 - share_near(*args),
             name="missed for seen",
         ),
     ),

@@ -115,17 +115,12 @@ def _apart(points: Floats, one: Pair, other: Pair) -> Floats:
     return apart
 
 
-def _through_with(change: Any) -> Any:
-    """Return ``through`` with its angle and offset changed by one mistake."""
-
-    def changed(p: Floats, q: Floats) -> Pair | None:
-        found = through(p, q)
-        return found and change(*found, p, q)
-
-    return changed
+def _through(change: Any) -> Any:
+    """Return ``through`` with its angle a and offset d changed by one mistake."""
+    return lambda p, q: (found := through(p, q)) and change(*found)
 
 
-def _along(_angle: float, _offset: float, p: Floats, q: Floats) -> Pair:
+def _along(p: Floats, q: Floats) -> Pair:
     """Return the line with the bearing of its direction in the place of its normal's."""
     angle = float(np.arctan2(*(q - p)[::-1]))
     return angle, float(p @ (np.cos(angle), np.sin(angle)))
@@ -187,28 +182,25 @@ line_through = Check(
             "Upright lines come out wrong: is something divided by a difference in x?",
             when=off_only_where(lambda case: case.args[0][0] == case.args[1][0]),
         ),
-        Fault("That is the bearing of the line itself: its normal is a quarter turn away.", like=_through_with(_along)),
+        Fault("That is the bearing of the line itself: its normal is a quarter turn away.", like=_along),
         Fault(
             "The offset has a sign: it belongs to the normal that you return.",
-            like=_through_with(lambda angle, offset, _p, _q: (angle, abs(offset))),
+            like=_through(lambda a, d: (a, abs(d))),
         ),
         Fault(
             "The line lies on the other side of the origin: is the sign of n . p right?",
-            like=_through_with(lambda angle, offset, _p, _q: (angle, -offset)),
+            like=_through(lambda a, d: (a, -d)),
         ),
         Fault(
             "Are x and y in the right places? np.arctan2 takes y first, then x.",
-            like=_through_with(lambda angle, offset, _p, _q: (np.pi / 2 - angle, offset)),
+            like=_through(lambda a, d: (np.pi / 2 - a, d)),
         ),
         Fault("A line is (angle, offset): the angle comes first.", when=_offset_first),
         Fault(
             "The normal must have length 1: else the offset is no distance in metres.",
-            like=_through_with(lambda angle, offset, p, q: (angle, offset * float(np.hypot(*(q - p))))),
+            like=lambda p, q: (found := through(p, q)) and (found[0], found[1] * float(np.hypot(*(q - p)))),
         ),
-        Fault(
-            "Angles are in radians, not in degrees.",
-            like=_through_with(lambda angle, offset, _p, _q: (float(np.degrees(angle)), offset)),
-        ),
+        Fault("Angles are in radians, not in degrees.", like=_through(lambda a, d: (float(np.degrees(a)), d))),
     ),
 )
 

@@ -129,10 +129,7 @@ meet = Check(
             "That is the corner on the other side of the origin: by the sine of which difference is divided?",
             like=_with(lambda line: line, -1.0),
         ),
-        Fault(
-            "Angles are in radians already.",
-            like=_with(lambda line: (float(np.radians(line[0])), line[1])),
-        ),
+        Fault("Angles are in radians already.", like=_with(lambda line: (float(np.radians(line[0])), line[1]))),
     ),
 )
 
