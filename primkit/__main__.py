@@ -48,13 +48,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
 
     def run() -> None:
-        arguments = _parsed(sys.argv[1:] if argv is None else list(argv))
+        arguments = _parse(sys.argv[1:] if argv is None else list(argv))
         arguments.run(arguments)
 
     return exit_code(run)
 
 
-def _parsed(words: list[str]) -> argparse.Namespace:
+def _parse(words: list[str]) -> argparse.Namespace:
     """Read the words of the command line."""
     parser = Parser(prog="primkit", description=TEXT, epilog=EXAMPLES, **LOOK)
     parser.add_argument("--version", action="version", version=f"primkit {__version__}")

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 import primkit as pk
 from primkit.driving.explore import Exploration
 from primkit.driving.next_views import VIEW_SPACING, next_view, shown_from
-from primkit.driving.seen_map import LEAST_PLACE, SQUARE, SeenMap, joined, open_outlines
+from primkit.driving.seen_map import LEAST_PLACE, SQUARE, SeenMap, join_hits, open_outlines
 from primkit.driving.ways import LEAST_ROOM, forward, turning, ways_from, wheels_along
 from primkit.lidar import Scans
 from primkit.plots import plot_tour
@@ -267,7 +267,7 @@ def test_open_outlines_are_those_without_points():
 
 def test_hits_of_one_outline_are_joined():
     one = pk.scan(pk.World([pk.Circle((0.25, 0), 0.1)]), [(0, 0, 0)])
-    near = np.sort(np.hypot(*np.diff(joined(one)[np.argsort(joined(one)[:, 1])], axis=0).T))
+    near = np.sort(np.hypot(*np.diff(join_hits(one)[np.argsort(join_hits(one)[:, 1])], axis=0).T))
     assert near.max() <= SQUARE
 
 

@@ -16,7 +16,7 @@ from pathlib import Path
 import matplotlib.image
 import pytest
 
-from primkit.__main__ import _parsed
+from primkit.__main__ import _parse
 from primkit.checks import TASKS
 from tests import test_assignments as sets
 from tests import test_notebooks as form
@@ -119,7 +119,7 @@ def not_a_command(words):
         return [] if options[0] in NbGraderApp.subcommands else [shlex.join(words)]
     try:
         with contextlib.redirect_stdout(io.StringIO()):  # --help prints
-            _parsed(options)
+            _parse(options)
     except SystemExit as end:
         return [shlex.join(words)] if end.code else []
     return []

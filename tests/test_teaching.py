@@ -20,7 +20,7 @@ import pytest
 from primkit.__main__ import main
 from primkit.course.checking import check
 from primkit.course.course import ASSIGNMENTS, Course, new_course
-from primkit.course.grade import Journal, _one
+from primkit.course.grade import Journal, _grade_one
 from primkit.course.grading import MIME
 from primkit.course.handed_in import file_faults, tree_hash
 from primkit.course.running import nbgrader
@@ -202,7 +202,7 @@ def test_a_course_that_was_made_before_takes_edited_cells_too(graded):
     config = (older / "nbgrader_config.py").read_text("utf-8")
     ours = re.compile(r"^c\.(Autograde\.sanitize_preprocessors|WholeNotebook\.course) = .*\n", re.MULTILINE)
     (older / "nbgrader_config.py").write_text(ours.sub("", config))
-    verdict, said = _one(Course(older), PS, "edited", Journal(Course(older), PS), again=True)  # and no feedback
+    verdict, said = _grade_one(Course(older), PS, "edited", Journal(Course(older), PS), again=True)  # and no feedback
     assert verdict == "graded", said
     assert "ps1-setup: was missing" in said
 
@@ -389,7 +389,7 @@ def test_a_hidden_test_without_its_number_has_no_points(tmp_path):
     notebook = nbformat.v4.new_notebook(cells=cells)
     execute = CarefulExecute(course=str(tmp_path))
     execute.faults = []
-    execute._numbers_only(notebook)
+    execute._fail_without_points(notebook)
     failed = [any(output.output_type == "error" for output in each.outputs) for each in notebook.cells]
     assert failed == [False, True, True, True]
 

@@ -94,23 +94,31 @@ class Fault:
     ----------
     says : str
         What the student is told: a hint at the reason, not the solution.
-    like : callable, optional
-        The faulty algorithm: a student's function that returns the same in every case has this fault.
+    like : callable or tuple of callable, optional
+        The faulty algorithm, or several: a student's function that returns the same in every case has this fault.
     when : callable, optional
         Looks at all cases instead (a list of ``Case``), and tells whether they show this fault.
     name : str, optional
         A few words for the overview of a class, such as ``"corner for centre"``; what it says when not given.
+    judge : callable, optional
+        Compares with ``like`` where that returns something of another form than was asked for.
     """
 
     says: str
-    like: Callable[..., Any] | None = None
+    like: Callable[..., Any] | tuple[Callable[..., Any], ...] = ()
     when: Callable[[list[Case]], bool] | None = None
     name: str = ""
+    judge: Judge | None = None
 
     @property
     def called(self) -> str:
         """Its name, or what it says."""
         return self.name or self.says
+
+
+def off_only_where(holds: Callable[[Case], bool]) -> Callable[[list[Case]], bool]:
+    """Return a fault's look at all cases: whether something holds for each that is off."""
+    return lambda cases: all(holds(case) for case in cases if case.off is not None)
 
 
 @dataclass(frozen=True)
@@ -151,47 +159,44 @@ class Check:
                 if not cases and isinstance(error, NotImplementedError):  # the stub of a problem set
                     return Answer("not attempted", f"{self.name} still raises NotImplementedError.")
                 kind = type(error).__name__
-                says = f"{self._call(args)} raised {kind}: {error}"
-                if isinstance(error, TypeError) and not _takes(mine, given):
+                says = f"{self._write_call(args)} raised {kind}: {error}"
+                if isinstance(error, TypeError) and not _accepts(mine, given):
                     names = ", ".join(inspect.signature(self.reference).parameters)
                     says += f"\nKeep the arguments that are given: {self.name}({names})."
                     return Answer("error", says, "asks for other arguments")
                 return Answer("error", says, f"raises {kind}")
-            if not cases and _is_stub(got):
+            if not cases and (got is ... or (isinstance(got, Sequence) and any(part is ... for part in got))):
                 return Answer("not attempted", f"{self.name} still returns `...`.")
             if not same(given, args):
-                says = f"{self._call(args)} changes what it is given: work on a copy."
+                says = f"{self._write_call(args)} changes what it is given: work on a copy."
                 return Answer("wrong", says, "changes its arguments")
             expected = self.reference(*copy.deepcopy(args))
             cases.append(Case(args, got, expected, self.judge(got, expected, args)))
-        return self._judged(cases)
+        return self._decide(cases)
 
     def yours_or_ours(self, mine: Callable[..., Any]) -> Step:
         """Return the student's function where it is right, and the reference where it is not; print it to see which."""
         answer = self(mine)
         return Step(self.name, mine if answer.right else self.reference, answer)
 
-    def _judged(self, cases: list[Case]) -> Answer:
+    def _decide(self, cases: list[Case]) -> Answer:
         """Return the answer for results that all came without an error."""
         wrong = [case for case in cases if case.off is not None]
         if not wrong:
             return Answer("right", f"{self.name} passes all {len(cases)} cases.")
         fault = next((fault for fault in self.faults if self._has(fault, cases)), None)
         first = wrong[0]
-        says = f"in {len(wrong)} of {len(cases)} cases. For example {self._call(first.args)}: {first.off}."
+        says = f"in {len(wrong)} of {len(cases)} cases. For example {self._write_call(first.args)}: {first.off}."
         return Answer("wrong", says) if fault is None else Answer("wrong", f"{says}\n{fault.says}", fault.called)
 
     def _has(self, fault: Fault, cases: list[Case]) -> bool:
         """Tell whether the results show a fault."""
         if fault.when is not None:
             return fault.when(cases)
-        assert fault.like is not None  # a fault has one of the two
-        try:
-            return all(self.judge(c.got, _quietly(fault.like, copy.deepcopy(c.args)), c.args) is None for c in cases)
-        except Exception:  # the faulty way cannot do every case: then it is not what the student did
-            return False
+        ways = fault.like if isinstance(fault.like, tuple) else (fault.like,)
+        return any(_goes_like(way, cases, fault.judge or self.judge) for way in ways)
 
-    def _call(self, args: Args) -> str:
+    def _write_call(self, args: Args) -> str:
         """Write a call as a student would."""
         names = list(inspect.signature(self.reference).parameters)
         return f"{self.name}({', '.join(f'{name}={shown(arg)}' for name, arg in zip(names, args, strict=False))})"
@@ -220,7 +225,15 @@ def _quietly(function: Callable[..., Any], args: Args) -> Any:
         return function(*args)
 
 
-def _takes(function: Callable[..., Any], args: Args) -> bool:
+def _goes_like(way: Callable[..., Any], cases: list[Case], judge: Judge) -> bool:
+    """Tell whether the results are those of a faulty algorithm."""
+    try:
+        return all(judge(c.got, _quietly(way, copy.deepcopy(c.args)), c.args) is None for c in cases)
+    except Exception:  # it cannot do every case: then it is not what the student did
+        return False
+
+
+def _accepts(function: Callable[..., Any], args: Args) -> bool:
     """Tell whether a function can be called with these arguments, in this order."""
     try:
         inspect.signature(function).bind(*args)
@@ -229,8 +242,3 @@ def _takes(function: Callable[..., Any], args: Args) -> bool:
     except ValueError:  # one of those that do not say what they take
         return True
     return True
-
-
-def _is_stub(got: Any) -> bool:
-    """Tell whether a result is ``...``, or holds it."""
-    return got is ... or (isinstance(got, Sequence) and any(part is ... for part in got))

@@ -22,9 +22,9 @@ from ..arguments import Floats
 from ..circles import fit_circle as library_fit
 from ..shapes import Circle
 from . import judges
-from .answer import Case, Check, Fault
+from .answer import Case, Check, Fault, off_only_where
 from .cases import RANDOM_CASES, Args, around
-from .judges import as_circle, shown
+from .judges import as_circle, is_pair, shown
 
 XYR = tuple[float, float, float]
 
@@ -54,7 +54,7 @@ _same_circle = judges.circle()
 
 def _as_good(got: Any, expected: Any, args: Args) -> str | None:
     """Judge a circle: the expected one, or one that lies as near to the points as Kasa's or Pratt's."""
-    if isinstance(got, Circle) or (isinstance(got, (tuple, list)) and len(got) == 2):  # the lesson goes on with three
+    if isinstance(got, Circle) or is_pair(got):  # the lesson goes on with three
         return f"got {shown(got)}, expected three numbers: x, y and radius in metres"
     off = _same_circle(got, expected, args)
     mine, reference = as_circle(got), kasa(args[0])
@@ -99,9 +99,6 @@ def _rms_cases(rng: np.random.Generator) -> Iterator[Args]:
         yield points, center + rng.uniform(-0.02, 0.02, 2), radius * float(rng.uniform(0.8, 1.2))
 
 
-# --- usual faults -----------------------------------------------------------------------------------------------
-
-
 def _gives(wrong: Callable[[Floats], XYR | None]) -> Callable[[list[Case]], bool]:
     """Tell whether a faulty way gives the same circles; what comes for points that fix none is another fault."""
 
@@ -139,11 +136,6 @@ def _root_of_k(cases: list[Case]) -> bool:
     return True
 
 
-def _circle_for_none(cases: list[Case]) -> bool:
-    """Tell whether all circles are right, and something came back where there is none."""
-    return all(case.off is None for case in cases if case.expected is not None)
-
-
 _TWICE = "The centre is twice as far out as it is: the equation has 2 a x and 2 b y in it, not a x and b y."
 
 fit_circle = Check(
@@ -152,7 +144,10 @@ fit_circle = Check(
     _fit_cases,
     _as_good,
     (
-        Fault("Every circle is right. Where the points fix none, return None: see the rank.", when=_circle_for_none),
+        Fault(
+            "Every circle is right. Where the points fix none, return None: see the rank.",
+            when=off_only_where(lambda case: case.expected is None),
+        ),
         Fault("The mean of the points is the centre only when they lie all around it.", when=_gives(_by_mean)),
         Fault("The last number of the solution is k, and k = r² - a² - b²: it is not r² yet.", when=_root_of_k),
         Fault(
@@ -176,16 +171,16 @@ def _from_residuals(number: Callable[[Floats], Any]) -> Callable[[Floats, Floats
     return lambda *args: float(number(_residuals(*args)))
 
 
-_CANCEL = "Residuals outside and inside cancel each other: square them first."
-
 circle_rms = Check(
     "circle_rms",
     rms,
     _rms_cases,
     judges.number("m"),
     (
-        Fault(_CANCEL, like=_from_residuals(np.mean)),
-        Fault(_CANCEL, like=_from_residuals(lambda e: abs(np.mean(e)))),
+        Fault(
+            "Residuals outside and inside cancel each other: square them first.",
+            like=(_from_residuals(np.mean), _from_residuals(lambda e: abs(np.mean(e)))),
+        ),
         Fault("That is in square metres: is a root missing?", like=_from_residuals(lambda e: np.mean(e**2))),
         Fault("More points make it larger: mean, not sum.", like=_from_residuals(lambda e: np.sqrt(np.sum(e**2)))),
         Fault(
@@ -195,10 +190,7 @@ circle_rms = Check(
         Fault(
             "That is the mean of the distances; RMS squares them first.", like=_from_residuals(lambda e: abs(e).mean())
         ),
-        Fault(
-            "Those are distances to the centre: subtract the radius.",
-            like=lambda points, center, radius: rms(points, center, 0.0),  # noqa: ARG005 (that is the fault)
-        ),
+        Fault("Those are distances to the centre: subtract the radius.", like=lambda p, c, _r: rms(p, c, 0.0)),
         Fault(
             "That compares squared lengths, as Kasa's fit does: compare the lengths.",
             like=lambda p, c, r: np.sqrt(np.mean((((p - c) ** 2).sum(axis=1) - r**2) ** 2)),

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ..arguments import Floats
 from ..grid import Grid
-from .answer import Case, Check, Fault
+from .answer import Case, Check, Fault, off_only_where
 from .cases import UNDECIDED, Args, around, random_cases
 from .judges import array, no_return, shown
 
@@ -90,7 +90,7 @@ to_cells = Check(
         Fault("x and y have changed places: i counts along x.", like=_by(lambda place: np.floor(place)[:, ::-1])),
         Fault(
             "How many cells fit into that many metres? Divide by their size.",
-            like=lambda points, resolution: np.floor(points * resolution),
+            like=lambda points, size: np.floor(points * size),
         ),
     ),
 )
@@ -160,13 +160,9 @@ def _cut(cells: Cells, pose: Floats, angles: Floats, ranges: Floats, resolution:
     return cells | _as_set(np.trunc(_hits(pose, angles, ranges) / resolution).astype(int))
 
 
-def _misses_kept(cases: list[Case]) -> bool:
+def _holds_misses(case: Case) -> bool:
     """Tell whether the only cells too many are those of beams that met nothing, infinitely far out."""
-    return all(
-        isinstance(case.got, set) and case.expected <= case.got and all(map(_no_place, case.got - case.expected))
-        for case in cases
-        if case.off
-    )
+    return isinstance(case.got, set) and case.expected <= case.got and all(map(_no_place, case.got - case.expected))
 
 
 def _no_place(cell: Any) -> bool:
@@ -181,7 +177,10 @@ occupy = Check(
     _scan_cases,
     _judge_cells,
     (
-        Fault("A beam that met nothing reads inf and occupies no cell: leave it out first.", when=_misses_kept),
+        Fault(
+            "A beam that met nothing reads inf and occupies no cell: leave it out first.",
+            when=off_only_where(_holds_misses),
+        ),
         Fault(
             "Where are the cells of the scans before? A map keeps what it knows.",
             like=lambda _cells, *scan: with_scan(set(), *scan),

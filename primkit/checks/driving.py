@@ -23,7 +23,7 @@ import numpy as np
 from ..arguments import Floats
 from ..robot import AXLE, FASTEST, WHEEL, moved
 from . import judges
-from .answer import Case, Check, Fault
+from .answer import Case, Check, Fault, off_only_where
 from .cases import RANDOM_CASES, Args, around
 
 Pose = tuple[float, float, float]
@@ -71,9 +71,6 @@ def _drives(rng: np.random.Generator) -> Iterator[Args]:
         yield pose, left, left if n % 5 == 0 else right, float(rng.uniform(0.1, 3.0))
 
 
-# --- usual faults of a step --------------------------------------------------------------------------------------
-
-
 def _straight(share: float) -> Callable[..., Floats]:
     """Return a faulty step: the length of the arc straight on, in a heading ``share`` of the turn on from the old."""
 
@@ -95,16 +92,6 @@ def _speeds(change: Callable[[float, float], tuple[float, float]]) -> Callable[.
     return step
 
 
-def _after(fixed: float) -> Callable[..., Floats]:
-    """Return a faulty step: the right one for a fixed time."""
-    return lambda pose, left, right, _seconds: pose_after(pose, left, right, fixed)
-
-
-def _only_straight_is_off(cases: list[Case]) -> bool:
-    """Tell whether all is right but where both wheels turn equally fast."""
-    return all(case.args[1] == case.args[2] for case in cases if case.off is not None)
-
-
 def _pieces(cases: list[Case]) -> bool:
     """Tell whether straight ways and headings are right, and arcs end beside the right place, but not far from it."""
     for case in cases:
@@ -119,11 +106,6 @@ def _pieces(cases: list[Case]) -> bool:
     return True
 
 
-def _heading_stays(cases: list[Case]) -> bool:
-    """Tell whether the places are right and the headings are the old ones."""
-    return all(_same_pose(case.got, [*case.expected[:2], case.args[0][2]], case.args) is None for case in cases)
-
-
 drive_step = Check(
     "drive_step",
     pose_after,
@@ -132,7 +114,7 @@ drive_step = Check(
     (
         Fault(
             "Every arc is right. When both wheels turn equally fast, w is 0 and there is no circle: go straight on.",
-            when=_only_straight_is_off,
+            when=off_only_where(lambda case: case.args[1] == case.args[2]),
             name="w of zero",
         ),
         Fault(
@@ -173,14 +155,17 @@ drive_step = Check(
             like=lambda pose, *others: np.asarray(pose) + pose_after((0.0, 0.0, 0.0), *others),
             name="not turned by the old heading",
         ),
-        Fault("The place is right, the heading is the old one: add the turn.", when=_heading_stays),
-        *(
-            Fault(
-                "That is the pose after a fixed time: multiply by the time that is given.",
-                like=_after(fixed),
-                name="time left out",
-            )
-            for fixed in (1.0, 0.1)
+        Fault(
+            "The place is right, the heading is the old one: add the turn.",
+            like=lambda pose, *others: [*pose_after(pose, *others)[:2], pose[2]],
+        ),
+        Fault(
+            "That is the pose after a fixed time: multiply by the time that is given.",
+            like=(
+                lambda pose, left, right, _seconds: pose_after(pose, left, right, 1.0),
+                lambda pose, left, right, _seconds: pose_after(pose, left, right, 0.1),
+            ),
+            name="time left out",
         ),
         Fault(
             "The place is right, the heading is in degrees: radians are asked for.",
@@ -203,7 +188,7 @@ drive_step = Check(
 # --- what was seen ----------------------------------------------------------------------------------------------
 
 
-def seen(outline: Floats, points: Floats, reach: float) -> float:
+def share_near(outline: Floats, points: Floats, reach: float) -> float:
     """Return the share of the outline's places that have a point within reach."""
     return float(np.mean(_nearest(outline, points) <= reach))
 
@@ -236,7 +221,7 @@ def _drawn_outlines(rng: np.random.Generator) -> Iterator[Args]:
 
 def _per_point(outline: Floats, points: Floats, reach: float) -> float:
     """Return the share of the points that lie near the outline."""
-    return seen(points, outline, reach) if len(points) else 0.0
+    return share_near(points, outline, reach) if len(points) else 0.0
 
 
 def _pairs(outline: Floats, points: Floats, reach: float) -> float:
@@ -245,18 +230,16 @@ def _pairs(outline: Floats, points: Floats, reach: float) -> float:
     return float(near.mean()) if near.size else 0.0
 
 
-def _empty_is_off(cases: list[Case]) -> bool:
-    """Tell whether all is right but where there are no points."""
-    return all(len(case.args[1]) == 0 for case in cases if case.off is not None)
-
-
 share_seen = Check(
     "share_seen",
-    seen,
+    share_near,
     _drawn_outlines,
     judges.number(),
     (
-        Fault("Everything is right but this: of an outline without any points nothing is seen, 0.", when=_empty_is_off),
+        Fault(
+            "Everything is right but this: of an outline without any points nothing is seen, 0.",
+            when=off_only_where(lambda case: len(case.args[1]) == 0),
+        ),
         Fault(
             "That is the share of points near the outline: ask for each place of the outline instead.",
             like=_per_point,
@@ -274,20 +257,17 @@ share_seen = Check(
         ),
         Fault(
             "The squared distance is compared with the reach: is a root missing?",
-            like=lambda o, p, reach: seen(o, p, reach**0.5),
+            like=lambda o, p, reach: share_near(o, p, reach**0.5),
         ),
         Fault(
             "That is how many, not which share: divide by the number of places.",
-            like=lambda outline, points, reach: seen(outline, points, reach) * len(outline),
+            like=lambda *args: share_near(*args) * len(args[0]),
             name="a count for a share",
         ),
-        Fault(
-            "That is per cent: a share goes from 0 to 1.",
-            like=lambda outline, points, reach: 100 * seen(outline, points, reach),
-        ),
+        Fault("That is per cent: a share goes from 0 to 1.", like=lambda *args: 100 * share_near(*args)),
         Fault(
             "That is the part that was missed: 1 minus what is asked for.",
-            like=lambda outline, points, reach: 1 - seen(outline, points, reach),
+            like=lambda *args: 1 - share_near(*args),
             name="missed for seen",
         ),
     ),

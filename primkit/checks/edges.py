@@ -20,9 +20,9 @@ from ..arguments import ROUNDING, Bools, Floats
 from ..lines import LINE
 from ..lines import fit_line as best_fit
 from ..ransac import run_ransac
-from .answer import Case, Check, Fault
+from .answer import Case, Check, Fault, off_only_where
 from .cases import Args
-from .judges import CLOSE, as_line, line, no_return, shown
+from .judges import CLOSE, array, as_line, is_pair, line, no_return, number, shown
 from .walls import bands, clouds, pairs, scenes
 
 Pair = tuple[float, float]  # angle and offset of a line
@@ -47,7 +47,7 @@ def near(points: Floats, line: Any, threshold: float) -> Bools:
     return inside
 
 
-def fitted(points: Floats) -> Pair | None:
+def fit_best(points: Floats) -> Pair | None:
     """Return the line with the least squared distances; None for fewer than two different points."""
     return as_line(best_fit(points))
 
@@ -59,9 +59,6 @@ def best_of(points: Floats, threshold: float, trials: int, rng: Any) -> tuple[Pa
         return None
     angle, offset = found.params.tolist()
     return (angle, offset), found.inliers
-
-
-# --- judges ----------------------------------------------------------------------------------------------------
 
 
 def _mask(value: Any, n: int) -> Bools | None:
@@ -86,12 +83,12 @@ NOT_ITS_OWN, NOT_REFITTED, FEW = "not those within the threshold of the line", "
 
 
 def _judge_consensus(got: Any, expected: Any, args: Args) -> str | None:
-    """Judge a line and its inliers against the points: they must agree, be many, and be fitted."""
+    """Judge a line and its inliers against the points: they must agree, be many, and be fit_best."""
     points, threshold = args[0], args[1]
     wanted = "None" if expected is None else "a line (angle, offset) and True or False for each point"
     if expected is None or got is None:
         return None if got is expected else f"got {shown(got)}, expected {wanted}{no_return(got)}"
-    pair = got if isinstance(got, (tuple, list)) and len(got) == 2 else (None, None)
+    pair = got if is_pair(got) else (None, None)
     own, mask = as_line(pair[0]), _mask(pair[1], len(points))
     if own is None or mask is None or not np.isfinite(own).all():
         return f"got {shown(got)}, expected {wanted}"
@@ -102,7 +99,7 @@ def _judge_consensus(got: Any, expected: Any, args: Args) -> str | None:
     most = int(expected[1].sum())
     if mask.sum() < LEAST_INLIERS * most:
         return f"{FEW} {int(mask.sum())} inliers, expected about {most}"
-    best = fitted(points[mask]) or own  # so many inliers always fix a line
+    best = fit_best(points[mask]) or own  # so many inliers always fix a line
     off = float(np.abs(_apart(points[mask], best, own)).max())
     # Only a sample goes exactly through two points; it may stay where a refit would lose inliers.
     sampled = off > CLOSE and (distance <= CLOSE).sum() >= 2 and near(points, best, threshold).sum() >= mask.sum()
@@ -118,20 +115,12 @@ def _apart(points: Floats, one: Pair, other: Pair) -> Floats:
     return apart
 
 
-# --- usual faults ----------------------------------------------------------------------------------------------
+def _through(change: Any) -> Any:
+    """Return ``through`` with its angle a and offset d changed by one mistake."""
+    return lambda p, q: (found := through(p, q)) and change(*found)
 
 
-def _through_with(change: Any) -> Any:
-    """Return ``through`` with its angle and offset changed by one mistake."""
-
-    def changed(p: Floats, q: Floats) -> Pair | None:
-        found = through(p, q)
-        return found and change(*found, p, q)
-
-    return changed
-
-
-def _along(_angle: float, _offset: float, p: Floats, q: Floats) -> Pair:
+def _along(p: Floats, q: Floats) -> Pair:
     """Return the line with the bearing of its direction in the place of its normal's."""
     angle = float(np.arctan2(*(q - p)[::-1]))
     return angle, float(p @ (np.cos(angle), np.sin(angle)))
@@ -142,31 +131,10 @@ def _near_with(distance: Any) -> Any:
     return lambda points, line, threshold: distance(points, *(as_line(line) or line)) <= threshold + ROUNDING
 
 
-def _without_a_line(cases: list[Case]) -> bool:
-    """Tell whether nothing is off but what fixes no line."""
-    return all(case.expected is None for case in cases if case.off)
-
-
 def _offset_first(cases: list[Case]) -> bool:
     """Tell whether the two numbers of each line came back in the other order."""
     turned = [(mine and mine[::-1], case) for case in cases for mine in [as_line(case.got)]]
     return all(line()(mine, case.expected, case.args) is None for mine, case in turned)
-
-
-def _upright(cases: list[Case]) -> bool:
-    """Tell whether nothing is off but pairs one above the other, doubled points included."""
-    return all(case.args[0][0] == case.args[1][0] for case in cases if case.off)
-
-
-def _as_a_number(cases: list[Case]) -> bool:
-    """Tell whether the inliers were counted."""
-    return all(isinstance(case.got, (int, np.integer)) and case.got == case.expected.sum() for case in cases)
-
-
-def _as_indices(cases: list[Case]) -> bool:
-    """Tell whether the inliers' numbers came back, alone or in a tuple as ``np.nonzero`` gives them."""
-    alone = (case.got[0] if isinstance(case.got, tuple) and case.got else case.got for case in cases)
-    return all(shown(got) == shown(np.flatnonzero(c.expected)) for got, c in zip(alone, cases, strict=True))
 
 
 def _least_squares_in_y(cases: list[Case]) -> bool:
@@ -186,7 +154,7 @@ def _by_svd(row: int, *, centred: bool = True, columns: bool = False) -> Any:
     """Return a fit that takes the wrong direction, forgets to centre, or reads columns for rows."""
 
     def fit(points: Floats) -> Pair | None:
-        if fitted(points) is None:
+        if fit_best(points) is None:
             return None
         directions = np.linalg.svd(points - points.mean(axis=0) * centred)[2]
         normal = (directions.T if columns else directions)[row]
@@ -195,7 +163,10 @@ def _by_svd(row: int, *, centred: bool = True, columns: bool = False) -> Any:
     return fit
 
 
-def _told(words: str) -> Any:
+_NO_LINE = off_only_where(lambda case: case.expected is None)
+
+
+def _judged_with(words: str) -> Any:
     """Return a predicate: some case was judged with these words."""
     return lambda cases: any(words in (case.off or "") for case in cases)
 
@@ -206,30 +177,30 @@ line_through = Check(
     pairs,
     line(),
     (
-        Fault("Twice the same point fixes no line: return None before anything is divided.", when=_without_a_line),
-        Fault("Upright lines come out wrong: is something divided by a difference in x?", when=_upright),
-        Fault("That is the bearing of the line itself: its normal is a quarter turn away.", like=_through_with(_along)),
+        Fault("Twice the same point fixes no line: return None before anything is divided.", when=_NO_LINE),
+        Fault(
+            "Upright lines come out wrong: is something divided by a difference in x?",
+            when=off_only_where(lambda case: case.args[0][0] == case.args[1][0]),
+        ),
+        Fault("That is the bearing of the line itself: its normal is a quarter turn away.", like=_along),
         Fault(
             "The offset has a sign: it belongs to the normal that you return.",
-            like=_through_with(lambda angle, offset, _p, _q: (angle, abs(offset))),
+            like=_through(lambda a, d: (a, abs(d))),
         ),
         Fault(
             "The line lies on the other side of the origin: is the sign of n . p right?",
-            like=_through_with(lambda angle, offset, _p, _q: (angle, -offset)),
+            like=_through(lambda a, d: (a, -d)),
         ),
         Fault(
             "Are x and y in the right places? np.arctan2 takes y first, then x.",
-            like=_through_with(lambda angle, offset, _p, _q: (np.pi / 2 - angle, offset)),
+            like=_through(lambda a, d: (np.pi / 2 - a, d)),
         ),
         Fault("A line is (angle, offset): the angle comes first.", when=_offset_first),
         Fault(
             "The normal must have length 1: else the offset is no distance in metres.",
-            like=_through_with(lambda angle, offset, p, q: (angle, offset * float(np.hypot(*(q - p))))),
+            like=lambda p, q: (found := through(p, q)) and (found[0], found[1] * float(np.hypot(*(q - p)))),
         ),
-        Fault(
-            "Angles are in radians, not in degrees.",
-            like=_through_with(lambda angle, offset, _p, _q: (float(np.degrees(angle)), offset)),
-        ),
+        Fault("Angles are in radians, not in degrees.", like=_through(lambda a, d: (float(np.degrees(a)), d))),
     ),
 )
 
@@ -239,8 +210,16 @@ inliers_of = Check(
     bands,
     _judge_mask,
     (
-        Fault("That is how many they are: asked for is True or False for each point.", when=_as_a_number),
-        Fault("Those are the numbers of the inliers: asked for is True or False for each point.", when=_as_indices),
+        Fault(
+            "That is how many they are: asked for is True or False for each point.",
+            like=lambda *args: near(*args).sum(),
+            judge=number(),
+        ),
+        Fault(
+            "Those are the numbers of the inliers: asked for is True or False for each point.",
+            like=(lambda *args: np.flatnonzero(near(*args)), lambda *args: np.nonzero(near(*args))),
+            judge=array(),
+        ),
         Fault(
             "A point exactly on the boundary is an inlier: < or <= ?",
             like=lambda points, line, threshold: near(points, line, threshold - 2 * ROUNDING),
@@ -265,11 +244,11 @@ inliers_of = Check(
 
 fit_line = Check(
     "fit_line",
-    fitted,
+    fit_best,
     clouds,
     line(),
     (
-        Fault("Fewer than two different points fix no line: return None.", when=_without_a_line),
+        Fault("Fewer than two different points fix no line: return None.", when=_NO_LINE),
         Fault("That fits y = a x + b: it measures along y, and upright walls fail.", when=_least_squares_in_y),
         Fault("That is the direction of most scatter, along the wall: the normal is across.", like=_by_svd(0)),
         Fault("The directions are the rows of what svd returns, not its columns.", like=_by_svd(1, columns=True)),
@@ -283,9 +262,17 @@ ransac_line = Check(
     scenes,
     _judge_consensus,
     (
-        Fault("Where no two points differ there is no line: return None.", when=_without_a_line),
-        Fault("Inliers belong to the line that is returned: take them anew after the refit.", when=_told(NOT_ITS_OWN)),
-        Fault("Far fewer inliers than possible: is the best trial kept, or the first, or the last?", when=_told(FEW)),
-        Fault("The line still goes through its two points: fit it to all its inliers.", when=_told(NOT_REFITTED)),
+        Fault("Where no two points differ there is no line: return None.", when=_NO_LINE),
+        Fault(
+            "Inliers belong to the line that is returned: take them anew after the refit.",
+            when=_judged_with(NOT_ITS_OWN),
+        ),
+        Fault(
+            "Far fewer inliers than possible: is the best trial kept, or the first, or the last?",
+            when=_judged_with(FEW),
+        ),
+        Fault(
+            "The line still goes through its two points: fit it to all its inliers.", when=_judged_with(NOT_REFITTED)
+        ),
     ),
 )

@@ -83,9 +83,6 @@ def _own_and_next(points: Floats, labels: Labels, itself: int = 1) -> tuple[Floa
     return own, others.min(axis=1), sizes[inverse] == 1
 
 
-# --- cases --------------------------------------------------------------------------------------------------------
-
-
 def _assign_cases(rng: np.random.Generator) -> Iterator[Args]:
     """Yield plain points and centres, then random ones without ties."""
     row = np.array([[0.0, 0.0], [0.1, 0.0], [0.3, 0.0], [0.4, 0.1]])
@@ -141,9 +138,6 @@ def _silhouette_cases(rng: np.random.Generator) -> Iterator[Args]:
         yield points[order], labels[order]
 
 
-# --- judges and faults --------------------------------------------------------------------------------------------
-
-
 def _labels(got: Any, expected: Any, args: Args) -> str | None:
     """Judge the numbers of centres: one whole number for each point."""
     wanted, k = np.asarray(expected), len(args[1])
@@ -164,7 +158,7 @@ def _labels(got: Any, expected: Any, args: Args) -> str | None:
     return f"point {worst} got the number {labels[worst]}, expected {wanted[worst]}"
 
 
-def _shaped(shape_of: Callable[[Case], tuple[int, ...]]) -> Callable[[list[Case]], bool]:
+def _has_shape(shape_of: Callable[[Case], tuple[int, ...]]) -> Callable[[list[Case]], bool]:
     """Return a fault's look at the cases: whether all results have the shape that it tells."""
 
     def when(cases: list[Case]) -> bool:
@@ -176,46 +170,15 @@ def _shaped(shape_of: Callable[[Case], tuple[int, ...]]) -> Callable[[list[Case]
     return when
 
 
-def _nan_for_an_empty_group(cases: list[Case]) -> bool:
-    """Tell whether exactly the groups without points have no number for a centre."""
-    if not _shaped(lambda case: case.args[2].shape)(cases):
-        return False
-    return all(np.array_equal(_is_nan(case.got).any(axis=1), _empty(case)) for case in cases)
-
-
-def _is_nan(got: Any) -> Bools:
-    """Return where a result is NaN, and nowhere when it holds no numbers."""
-    values = np.asarray(got)
-    return np.isnan(values) if values.dtype.kind == "f" else np.zeros(values.shape, dtype=bool)
-
-
 def _nearest_along(axis: int) -> Any:
     """Return the assignment that compares one coordinate only."""
     return lambda points, centers: np.argmin(np.abs(points[:, [axis]] - centers[:, axis]), axis=1)
-
-
-def _least_distances(cases: list[Case]) -> bool:
-    """Tell whether the distances to the nearest centres came back, not the centres' numbers."""
-    if not _shaped(lambda case: (len(case.args[0]),))(cases):
-        return False
-    least = [_distances(*case.args).min(axis=1) for case in cases]
-    values = [np.asarray(case.got) for case in cases]
-    return all(v.dtype.kind == "f" and np.allclose(v, d) for v, d in zip(values, least, strict=True))
 
 
 def _empty(case: Case) -> Bools:
     """Return which groups have no points, shape (k,)."""
     _, labels, centers = case.args
     return ~np.isin(np.arange(len(centers)), labels)
-
-
-def _nan_for_a_lone_point(cases: list[Case]) -> bool:
-    """Tell whether the silhouette is not a number where a point is alone, and right elsewhere."""
-    alone = [1 in np.bincount(case.args[1]) for case in cases]
-    return all(
-        isinstance(case.got, float) and np.isnan(case.got) if lone else case.off is None
-        for case, lone in zip(cases, alone, strict=True)
-    )
 
 
 def _all_others(points: Floats, labels: Labels) -> float:
@@ -273,16 +236,20 @@ assign_points = Check(
         Fault("Only y is compared: a distance has x and y in it.", like=_nearest_along(1)),
         Fault(
             "Those are the distances themselves: which centre has the least one?",
-            when=_shaped(lambda case: (len(case.args[0]), len(case.args[1]))),
+            when=_has_shape(lambda case: (len(case.args[0]), len(case.args[1]))),
         ),
-        Fault("Those are the least distances: the number of the centre is asked for.", when=_least_distances),
+        Fault(
+            "Those are the least distances: the number of the centre is asked for.",
+            like=lambda p, c: _distances(p, c).min(axis=1),
+            judge=array("m"),
+        ),
         Fault(
             "That is one number for all points: along which axis is the least sought?",
             when=lambda cases: all(isinstance(case.got, (int, np.integer)) for case in cases),
         ),
         Fault(
             "That is the nearest point of each centre: along which axis is the least sought?",
-            when=_shaped(lambda case: (len(case.args[1]),)),
+            when=_has_shape(lambda case: (len(case.args[1]),)),
         ),
     ),
 )
@@ -294,11 +261,12 @@ update_centers = Check(
     array("m"),
     (
         Fault(
-            "A group without points has no mean (0 / 0): its centre stays where it was.", when=_nan_for_an_empty_group
+            "A group without points has no mean (0 / 0): its centre stays where it was.",
+            like=_each(lambda own: own.mean(axis=0), lambda center: center * np.nan),
         ),
         Fault(
             "A group without points is left out: its centre stays, so that there are always k rows.",
-            when=_shaped(lambda case: (int((~_empty(case)).sum()), 2)),
+            when=_has_shape(lambda case: (int((~_empty(case)).sum()), 2)),
         ),
         Fault(
             "A group without points is sent to (0, 0): its centre stays where it was.",
@@ -306,7 +274,7 @@ update_centers = Check(
         ),
         Fault(
             "x and y are averaged together: a mean of positions goes along the points, axis=0.",
-            when=_shaped(lambda case: (len(case.args[2]),)),
+            when=_has_shape(lambda case: (len(case.args[2]),)),
         ),
         Fault("That is the sum: divide it by the number of points in it.", like=_each(lambda own: own.sum(axis=0))),
         Fault("That is the median; K-Means takes the mean.", like=_each(lambda own: np.median(own, axis=0))),
@@ -323,10 +291,12 @@ silhouette = Check(
     _silhouette_cases,
     number(),
     (
-        Fault("A point alone in its group divides 0 by 0: its silhouette is 0.", when=_nan_for_a_lone_point),
+        Fault("A point alone in its group divides 0 by 0: its silhouette is 0.", like=_with(_score, lone=np.nan)),
         Fault("A point alone in its group counts as 1; by definition it counts as 0.", like=_with(_score, lone=1.0)),
-        Fault("a counts the point itself, at distance 0: the mean goes over the others.", like=_with(_score, 0)),
-        Fault("a counts the point itself, at distance 0: the mean goes over the others.", like=_with(_score, 0, 1.0)),
+        Fault(
+            "a counts the point itself, at distance 0: the mean goes over the others.",
+            like=(_with(_score, 0), _with(_score, 0, 1.0)),
+        ),
         Fault("b is a mean over all points of a group, not the distance to the nearest point.", like=_nearest_point),
         Fault("Points alone in their group count too, as 0: the mean goes over all points.", like=_lone_left_out),
         Fault("b is the mean distance to the nearest other group, not to all other points.", like=_all_others),
@@ -335,7 +305,7 @@ silhouette = Check(
         Fault("Distances go to the points of a group here, not to its centre.", like=_to_centers),
         Fault(
             "That is one silhouette for each point: their mean is asked for.",
-            when=_shaped(lambda case: (len(case.args[0]),)),
+            when=_has_shape(lambda case: (len(case.args[0]),)),
         ),
     ),
 )

@@ -150,7 +150,7 @@ def as_circle(value: Any) -> tuple[float, float, float] | None:
     """Return (x, y, radius) of anything that is a circle; None for what is none."""
     if isinstance(value, Circle):
         return (*value.center.tolist(), value.radius)
-    if isinstance(value, (tuple, list)) and len(value) == 2:  # ((x, y), radius)
+    if is_pair(value):  # ((x, y), radius)
         center = _floats(value[0])
         value = (*center, value[1]) if center is not None and center.shape == (2,) else None
     numbers = _floats(value)
@@ -163,6 +163,11 @@ def as_line(value: Any) -> tuple[float, float] | None:
         return float(value.angle), float(value.offset)
     numbers = _floats(value)
     return None if numbers is None or numbers.shape != (2,) else tuple(numbers.tolist())
+
+
+def is_pair(value: Any) -> bool:
+    """Tell whether a result is two things."""
+    return isinstance(value, (tuple, list)) and len(value) == 2
 
 
 def same(a: Any, b: Any) -> bool:
@@ -212,7 +217,7 @@ def _floats(value: Any) -> NDArray[np.float64] | None:
 
 
 def _close(a: NDArray[np.float64], b: NDArray[np.float64], tolerance: float) -> bool:
-    return bool(np.allclose(a, b, rtol=0.0, atol=tolerance))
+    return bool(np.allclose(a, b, rtol=0.0, atol=tolerance, equal_nan=True))  # only a faulty way expects nan
 
 
 def no_return(got: Any) -> str:

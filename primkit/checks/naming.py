@@ -19,9 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import Floats
-from .answer import Case, Check, Fault
+from .answer import Case, Check, Fault, off_only_where
 from .cases import Args, around, random_cases
-from .judges import array, no_return, number, shown
+from .judges import array, is_pair, no_return, number, shown
 
 Pair = tuple[float, float]
 
@@ -45,7 +45,7 @@ def meet_in(a: Pair, b: Pair) -> Floats | None:
     return np.array([x, y]) / bend
 
 
-def measured(corners: Floats) -> tuple[Floats, Floats]:
+def sides_and_center(corners: Floats) -> tuple[Floats, Floats]:
     """Return the lengths of the sides, from each corner to the next, shape (K,), and the centre of area, shape (2,)."""
     after = np.roll(corners, -1, axis=0)
     sides = np.hypot(*(after - corners).T)
@@ -57,10 +57,14 @@ def measured(corners: Floats) -> tuple[Floats, Floats]:
 
 def cheapest(squares: Floats, numbers: NDArray[np.int64], n_points: int, spread: float) -> tuple[int, float]:
     """Return which candidate costs least, and its margin: how much more the next one costs (inf without one)."""
-    return _chosen(np.asarray(squares) / spread**2 + np.asarray(numbers) * np.log(n_points))
+    return _choose(_costs(squares, numbers, n_points, spread))
 
 
-def _chosen(costs: Floats) -> tuple[int, float]:
+def _costs(squares: Floats, numbers: NDArray[np.int64], n_points: int, spread: float) -> Floats:
+    return np.asarray(squares) / spread**2 + np.asarray(numbers) * np.log(n_points)
+
+
+def _choose(costs: Floats) -> tuple[int, float]:
     order = np.argsort(costs, kind="stable")
     margin = costs[order[1]] - costs[order[0]] if len(costs) > 1 else np.inf
     return int(order[0]), float(margin)
@@ -100,18 +104,6 @@ def _with(change: Callable[[Pair], Pair], sign: float = 1.0) -> Callable[[Pair, 
     return lambda a, b: None if (found := meet_in(change(a), change(b))) is None else sign * found
 
 
-def _parallel_alone(cases: list[Case]) -> bool:
-    """Tell whether parallel lines, and nothing else, came out wrong."""
-    return all((case.expected is None) == (case.off is not None) or case.expected is None for case in cases)
-
-
-def _opposite_alone(cases: list[Case]) -> bool:
-    """Tell whether parallel lines with opposite normals, and nothing else, came out wrong."""
-    return all(case.off is None or (case.expected is None and case.args[0][0] != case.args[1][0]) for case in cases)
-
-
-_OF_THE_NORMAL = "The angle is that of the normal, which stands square on the line; it is not the line's own direction."
-
 meet = Check(
     "meet",
     meet_in,
@@ -120,19 +112,24 @@ meet = Check(
     (
         Fault(
             "Right but for parallel lines with opposite normals: sin(pi) is 1e-16 on a computer, and not 0.",
-            when=_opposite_alone,
+            when=off_only_where(lambda case: case.expected is None and case.args[0][0] != case.args[1][0]),
         ),
-        Fault("Every corner is right. Parallel lines have none: return None for them.", when=_parallel_alone),
-        Fault(_OF_THE_NORMAL, like=_with(lambda line: (line[0] + np.pi / 2, line[1]))),
-        Fault(_OF_THE_NORMAL, like=_with(lambda line: (line[0] - np.pi / 2, line[1]))),
+        Fault(
+            "Every corner is right. Parallel lines have none: return None for them.",
+            when=off_only_where(lambda case: case.expected is None),
+        ),
+        Fault(
+            "The angle is that of the normal, which stands square on the line; it is not the line's own direction.",
+            like=(
+                _with(lambda line: (line[0] + np.pi / 2, line[1])),
+                _with(lambda line: (line[0] - np.pi / 2, line[1])),
+            ),
+        ),
         Fault(
             "That is the corner on the other side of the origin: by the sine of which difference is divided?",
             like=_with(lambda line: line, -1.0),
         ),
-        Fault(
-            "Angles are in radians already.",
-            like=_with(lambda line: (float(np.radians(line[0])), line[1])),
-        ),
+        Fault("Angles are in radians already.", like=_with(lambda line: (float(np.radians(line[0])), line[1]))),
     ),
 )
 
@@ -158,9 +155,9 @@ def _corner_cases(rng: np.random.Generator) -> Iterator[Args]:
     yield from random_cases(draw)
 
 
-def _judge_measured(got: Any, expected: Any, args: Args) -> str | None:
+def _judge_sides_and_center(got: Any, expected: Any, args: Args) -> str | None:
     """Judge the lengths of the sides, then the centre."""
-    if not isinstance(got, (tuple, list)) or len(got) != 2:
+    if not is_pair(got):
         return f"got {shown(got)}, expected two things: the sides and the centre{no_return(got)}"
     for name, mine, wanted in zip(("sides", "centre"), got, expected, strict=True):
         off = array("m")(mine, wanted, args)
@@ -169,40 +166,33 @@ def _judge_measured(got: Any, expected: Any, args: Args) -> str | None:
     return None
 
 
-def _centred(centre: Callable[[Floats], Floats]) -> Callable[[Floats], tuple[Floats, Floats]]:
+def _with_center(centre: Callable[[Floats], Floats]) -> Callable[[Floats], tuple[Floats, Floats]]:
     """Return the right sides with another centre."""
-    return lambda corners: (measured(corners)[0], centre(corners))
+    return lambda corners: (sides_and_center(corners)[0], centre(corners))
 
 
 def _of_outline(corners: Floats) -> Floats:
     """Return the mean over the outline, instead of over the area."""
-    sides, after = measured(corners)[0], np.roll(corners, -1, axis=0)
+    sides, after = sides_and_center(corners)[0], np.roll(corners, -1, axis=0)
     return (corners + after).T @ sides / (2 * sides.sum())
-
-
-def _of_extents(corners: Floats) -> Floats:
-    return (corners.min(axis=0) + corners.max(axis=0)) / 2
 
 
 def _unsigned(corners: Floats) -> Floats:
     """Return the centre with the area's sign forgotten: from the origin the wrong way when clockwise."""
     (x, y), (u, v) = corners.T, np.roll(corners, -1, axis=0).T
-    return measured(corners)[1] * np.sign((x * v - u * y).sum())
+    return sides_and_center(corners)[1] * np.sign((x * v - u * y).sum())
 
 
 def _one_side_short(cases: list[Case]) -> bool:
     """Tell whether in every case one side is missing."""
-    return all(
-        isinstance(case.got, (tuple, list)) and len(case.got) == 2 and np.shape(case.got[0]) == (len(case.args[0]) - 1,)
-        for case in cases
-    )
+    return all(is_pair(case.got) and np.shape(case.got[0]) == (len(case.args[0]) - 1,) for case in cases)
 
 
 sides_and_centroid = Check(
     "sides_and_centroid",
-    measured,
+    sides_and_center,
     _corner_cases,
-    _judge_measured,
+    _judge_sides_and_center,
     (
         Fault(
             "One side is missing: the outline is closed, so the last corner leads back to the first.",
@@ -210,29 +200,29 @@ sides_and_centroid = Check(
         ),
         Fault(
             "The sides are right, but each stands one place late: the first one leads from corner 0 to corner 1.",
-            like=lambda corners: (np.roll(measured(corners)[0], 1), measured(corners)[1]),
+            like=lambda corners: (np.roll(sides_and_center(corners)[0], 1), sides_and_center(corners)[1]),
         ),
         Fault(
             "The sides are right. That centre is the mean of the corners; where two corners stand close together, it "
             "is drawn to them, and the area's centre is not.",
-            like=_centred(lambda corners: corners.mean(axis=0)),
+            like=_with_center(lambda corners: corners.mean(axis=0)),
         ),
         Fault(
             "The sides are right. That centre is the mean along the outline, not over the area.",
-            like=_centred(_of_outline),
+            like=_with_center(_of_outline),
         ),
         Fault(
             "The sides are right. That centre is the middle of the extents, which changes when the shape turns.",
-            like=_centred(_of_extents),
+            like=_with_center(lambda corners: (corners.min(axis=0) + corners.max(axis=0)) / 2),
         ),
         Fault(
             "Right where the corners go counter-clockwise. Clockwise the area comes out negative, and so do the "
             "products above it: is the sign lost in one of the two?",
-            like=_centred(_unsigned),
+            like=_with_center(_unsigned),
         ),
         Fault(
             "The sides are right. The centre is halved: A is half of the sum of the cross products.",
-            like=_centred(lambda corners: measured(corners)[1] / 2),
+            like=_with_center(lambda corners: sides_and_center(corners)[1] / 2),
         ),
     ),
 )
@@ -262,7 +252,7 @@ def _choice_cases(rng: np.random.Generator) -> Iterator[Args]:
 
 def _judge_choice(got: Any, expected: Any, args: Args) -> str | None:
     """Judge which candidate was chosen, then the margin."""
-    if not isinstance(got, (tuple, list)) or len(got) != 2:
+    if not is_pair(got):
         return f"got {shown(got)}, expected two things: the number of the best candidate and its margin{no_return(got)}"
     off = number()(got[0], expected[0], args)
     if off is not None:
@@ -271,19 +261,9 @@ def _judge_choice(got: Any, expected: Any, args: Args) -> str | None:
     return None if off is None else f"the best is right, its margin is not: {off}"
 
 
-def _priced(cost: Callable[[Floats, Any, int, float], Floats]) -> Callable[..., tuple[int, float]]:
+def _choose_by(cost: Callable[[Floats, Any, int, float], Floats]) -> Callable[..., tuple[int, float]]:
     """Return the choice by another cost."""
-    return lambda squares, numbers, n_points, spread: _chosen(cost(squares, numbers, n_points, spread))
-
-
-def _margin_to_last(squares: Floats, numbers: Any, n_points: int, spread: float) -> tuple[int, float]:
-    costs = squares / spread**2 + numbers * np.log(n_points)
-    return int(np.argmin(costs)), float(costs.max() - costs.min()) if len(costs) > 1 else np.inf
-
-
-def _alone(cases: list[Case]) -> bool:
-    """Tell whether only the candidate without a rival came out wrong."""
-    return all(case.off is None or len(case.args[0]) == 1 for case in cases)
+    return lambda squares, numbers, n_points, spread: _choose(cost(squares, numbers, n_points, spread))
 
 
 fair_choice = Check(
@@ -293,27 +273,30 @@ fair_choice = Check(
     _judge_choice,
     (
         Fault(
-            "Right wherever there is a rival. Without one nothing comes near: the margin is float('inf').", when=_alone
+            "Right wherever there is a rival. Without one nothing comes near: the margin is float('inf').",
+            when=off_only_where(lambda case: len(case.args[0]) == 1),
         ),
         Fault(
             "That is the choice by misfit alone: what does a candidate pay for its numbers?",
-            like=_priced(lambda squares, _numbers, _n_points, spread: squares / spread**2),
+            like=_choose_by(lambda squares, _numbers, _n_points, spread: squares / spread**2),
         ),
         Fault(
             "The price of a number is ln N here. With 2 for each (Akaike's) extra numbers are too cheap.",
-            like=_priced(lambda squares, numbers, _n_points, spread: squares / spread**2 + 2 * numbers),
+            like=_choose_by(lambda squares, numbers, _n_points, spread: squares / spread**2 + 2 * numbers),
         ),
         Fault(
             "Square metres over metres: divide the squares by the square of the spread.",
-            like=_priced(lambda squares, numbers, n_points, spread: squares / spread + numbers * np.log(n_points)),
+            like=_choose_by(lambda squares, numbers, n_points, spread: squares / spread + numbers * np.log(n_points)),
         ),
         Fault(
             "Square metres are added to plain numbers: the squares must be divided by the spread's square first.",
-            like=_priced(lambda squares, numbers, n_points, _spread: squares + numbers * np.log(n_points)),
+            like=_choose_by(lambda squares, numbers, n_points, _spread: squares + numbers * np.log(n_points)),
         ),
         Fault(
             "ln is the natural logarithm: np.log, not np.log10.",
-            like=_priced(lambda squares, numbers, n_points, spread: squares / spread**2 + numbers * np.log10(n_points)),
+            like=_choose_by(
+                lambda squares, numbers, n_points, spread: squares / spread**2 + numbers * np.log10(n_points)
+            ),
         ),
         Fault(
             "The choice is right. The margin has the wrong sign: the rival costs more.",
@@ -321,7 +304,7 @@ fair_choice = Check(
         ),
         Fault(
             "The choice is right. The margin is measured to the worst candidate, not to the next best.",
-            like=_margin_to_last,
+            like=lambda *args: (cheapest(*args)[0], float(np.ptp(_costs(*args))) if len(args[0]) > 1 else np.inf),
         ),
     ),
 )

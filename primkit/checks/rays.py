@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 
 from ..arguments import Floats
-from .answer import Case, Check, Fault
+from .answer import Check, Fault, off_only_where
 from .cases import UNDECIDED, Args, random_cases
-from .judges import number
+from .judges import is_pair, number, shown
 
 INF = float("inf")
 
@@ -128,30 +128,11 @@ def _first(near: float, far: float) -> float:
     return near if near >= 0 else _ahead(far)
 
 
-def _two_numbers(cases: list[Case]) -> bool:
-    """Tell whether two numbers came back, at least for the hits."""
-    wrong = [case.got for case in cases if case.off]
-    return all((isinstance(got, np.ndarray) and got.shape == (2,)) or _pair(got) for got in wrong)
-
-
-def _pair(got: Any) -> bool:
-    return isinstance(got, (tuple, list)) and len(got) == 2
-
-
-def _none_for_a_miss(cases: list[Case]) -> bool:
-    """Tell whether all misses, and nothing else, came back as None."""
-    misses = [case for case in cases if case.expected == INF]
-    return all(case.got is None for case in misses) and not any(case.off for case in cases if case.expected != INF)
-
-
-def _nan_for_a_miss(cases: list[Case]) -> bool:
-    """Tell whether misses came back as NaN."""
-    return any(isinstance(case.got, float) and np.isnan(case.got) for case in cases if case.expected == INF)
-
-
 _NONE = Fault(
-    "Every hit is right. A beam that meets nothing must return float('inf'), not None.", when=_none_for_a_miss
+    "Every hit is right. A beam that meets nothing must return float('inf'), not None.",
+    when=off_only_where(lambda case: case.got is None and case.expected == INF),
 )
+_TWO = off_only_where(lambda case: is_pair(case.got) or getattr(case.got, "shape", ()) == (2,))
 
 ray_segment = Check(
     "ray_segment",
@@ -160,7 +141,7 @@ ray_segment = Check(
     number("m"),
     (
         _NONE,
-        Fault("Two numbers came back: only t, the distance along the beam, is asked for.", when=_two_numbers),
+        Fault("Two numbers came back: only t, the distance along the beam, is asked for.", when=_TWO),
         Fault("When is there no hit? Neither t nor s is looked at yet.", like=_segment(lambda t, _s: t)),
         Fault(
             "The sign of t is turned round: v x w and w x v have opposite signs.",
@@ -186,8 +167,11 @@ ray_circle = Check(
     number("m"),
     (
         _NONE,
-        Fault("Two numbers came back: only the distance to the first hit is asked for.", when=_two_numbers),
-        Fault("Some misses come back as nan: is the number under the root below zero?", when=_nan_for_a_miss),
+        Fault("Two numbers came back: only the distance to the first hit is asked for.", when=_TWO),
+        Fault(
+            "Some misses come back as nan: is the number under the root below zero?",
+            when=lambda cases: any(shown(case.got) == "nan" for case in cases if case.expected == INF),
+        ),
         Fault(
             "w is turned round: it goes from the robot to the centre, c minus origin.",
             like=lambda origin, direction, center, radius: hit_circle(center, direction, origin, radius),
@@ -200,11 +184,7 @@ ray_circle = Check(
         Fault("Circles behind the robot are hit too: is t >= 0 asked for?", like=_circle(lambda near, _far: near)),
         Fault(
             "From inside a circle the first root is negative and the second one counts.",
-            like=_circle(lambda near, _far: _ahead(near)),
-        ),
-        Fault(
-            "From inside a circle the first root is negative and the second one counts.",
-            like=_circle(lambda near, far: near if far >= 0 else INF),
+            like=(_circle(lambda near, _far: _ahead(near)), _circle(lambda near, far: near if far >= 0 else INF)),
         ),
         Fault(
             "That is the distance to the point nearest the centre: the outline comes half a chord earlier.",

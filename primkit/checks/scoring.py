@@ -138,28 +138,20 @@ match_shapes = Check(
     (
         Fault(
             "Each pair should be (index found, index true), not the other way round.",
-            like=lambda found, true, gate: [(t, f) for f, t in best_pairs(found, true, gate)],
+            like=lambda *args: [(t, f) for f, t in best_pairs(*args)],
         ),
-        Fault(
-            "Pairs are made beyond the gate too.", like=lambda found, true, _gate: best_pairs(found, true, OPEN_GATE)
-        ),
+        Fault("Pairs are made beyond the gate too.", like=lambda f, t, _gate: best_pairs(f, t, OPEN_GATE)),
         Fault(
             "The gate comes too late: a pair that it forbids has taken shapes that others could use.",
             like=lambda f, t, gate: [pair for pair in best_pairs(f, t, OPEN_GATE) if _distances(f, t)[pair] <= gate],
         ),
-        *(
-            Fault(
-                "Each takes its nearest, used or not: is a shape free once it stands in a pair?",
-                like=partial(_nearest, of=of),
-            )
-            for of in ("found", "true")
+        Fault(
+            "Each takes its nearest, used or not: is a shape free once it stands in a pair?",
+            like=(partial(_nearest, of="found"), partial(_nearest, of="true")),
         ),
-        *(
-            Fault(
-                "First come, first served: the order of a list must not decide who gets which.",
-                like=partial(_greedy, order=order),
-            )
-            for order in ("found", "true")
+        Fault(
+            "First come, first served: the order of a list must not decide who gets which.",
+            like=(partial(_greedy, order="found"), partial(_greedy, order="true")),
         ),
         Fault(
             "The closest pair first is greedy too: it can leave others far apart, or without a partner.",
@@ -177,10 +169,10 @@ def score(found: Sequence[Shape], true: Sequence[Shape], pairs: Pairs, tolerance
 
     ``tolerance`` in metres; ``true`` holds one shape at least.
     """
-    return _scored(found, true, pairs, tolerance)
+    return _score(found, true, pairs, tolerance)
 
 
-def _scored(
+def _score(
     found: Sequence[Shape],
     true: Sequence[Shape],
     pairs: Pairs,
@@ -275,37 +267,35 @@ weighted_accuracy = Check(
     (
         Fault(
             "Values that are far too small count as right: is there an absolute value?",
-            like=partial(_scored, absolute=False),
+            like=partial(_score, absolute=False),
         ),
-        Fault("False alarms cost nothing: each is one more wrong shape.", like=partial(_scored, alarms=False)),
+        Fault("False alarms cost nothing: each is one more wrong shape.", like=partial(_score, alarms=False)),
         Fault(
             "Missed shapes cost nothing: divide by what is in the truth, not by what was matched.",
-            like=partial(_scored, misses=False),
+            like=partial(_score, misses=False),
         ),
         Fault(
             "Neither misses nor false alarms cost anything: finding less must not score more.",
-            like=partial(_scored, misses=False, alarms=False),
+            like=partial(_score, misses=False, alarms=False),
         ),
         Fault(
             "The three parts do not weigh the same: 0.4, 0.3 and 0.3.",
-            like=partial(_scored, weights=(1 / 3, 1 / 3, 1 / 3)),
+            like=partial(_score, weights=(1 / 3, 1 / 3, 1 / 3)),
         ),
         Fault(
             "Sides are compared in the order of the lists: the first corner of one may be another's second.",
-            like=partial(_scored, shift=False),
+            like=partial(_score, shift=False),
         ),
-        Fault("x and y of a centre count separately.", like=partial(_scored, together=True)),
-        Fault(
-            "F counts false alarms alone: found shapes that stand in no pair.", like=partial(_scored, all_found=True)
-        ),
+        Fault("x and y of a centre count separately.", like=partial(_score, together=True)),
+        Fault("F counts false alarms alone: found shapes that stand in no pair.", like=partial(_score, all_found=True)),
         Fault(
             "Sides and radii are compared across kinds: dimensions count only where the kind is right.",
-            like=partial(_scored, sides_of_any=True),
+            like=partial(_score, sides_of_any=True),
         ),
         Fault(
             "Centres are compared only where the kind is right: they count for every pair.",
-            like=partial(_scored, kind_first=True),
+            like=partial(_score, kind_first=True),
         ),
-        Fault("That is in per cent: a score goes from 0 to 1.", like=partial(_scored, weights=(40.0, 30.0, 30.0))),
+        Fault("That is in per cent: a score goes from 0 to 1.", like=partial(_score, weights=(40.0, 30.0, 30.0))),
     ),
 )

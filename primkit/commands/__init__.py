@@ -9,15 +9,6 @@ Out: text on the screen, files in a folder; a wrong word is refused in one sente
 >>> nearest("stduy", ["map", "study"])
 "; did you mean 'study'?"
 
-The rooms, each of which imports only those before it:
-
-============  ==========================================
-``words.py``  reading options, and printing
-``board.py``  ``primkit map`` and ``primkit make-map``
-``many.py``   ``primkit study`` and ``primkit accuracy``
-``teach.py``  ``primkit teach`` and its own commands
-============  ==========================================
-
 Each command has its TEXT, its EXAMPLES, a function that adds its options to a parser and one that runs it. Nothing
 heavy is loaded before a command runs: ``--help`` must answer at once.
 """

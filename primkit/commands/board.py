@@ -133,7 +133,9 @@ def _write(out: Path, world: World, done: Run, report: Report, seed: int) -> Non
     method: Literal["link", "kmeans"] = "link" if done.told is None else "kmeans"
     labels = segment(done.points, done.told, method=method, rng=seed)
     save_figure(plot_story(world, done.scans, done.points, labels, done.found, report), out / "map.png")
-    save_world(World([d.shape for d in done.found], world.size), out / "found.geojson", properties=_known(done.found))
+    save_world(
+        World([d.shape for d in done.found], world.size), out / "found.geojson", properties=_describe(done.found)
+    )
     save_world(world, out / "truth.geojson")
     say(f"Wrote  {out / 'map.png'}, {out / 'found.geojson'}, {out / 'truth.geojson'}")
     say(f"Next   open {out / 'map.png'} to see it all; in Python, primkit.load_world reads the two maps.")
@@ -144,7 +146,7 @@ def _census(world: World) -> str:
     return count(len(world.shapes), "shape") + (f": {kinds}" if kinds else "")
 
 
-def _known(found: Sequence[Detection]) -> list[dict[str, Any]]:
+def _describe(found: Sequence[Detection]) -> list[dict[str, Any]]:
     """Return what is known of each found shape beside its outline; metres, and None for what is not finite."""
     known = []
     for d in found:

@@ -12,7 +12,7 @@ import sqlite3
 import sys
 import sysconfig
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
@@ -29,44 +29,30 @@ PIN = re.compile(r"^([\w.-]+)(?:\[[\w,]+\])?==([\w.]+)")
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that was looked at: what, how it is, and what to do when it is wrong."""
+    """One thing that was looked at: what, how it is, and what to do unless it is fine."""
 
     what: str
     found: str
     mend: str = ""
-
-    @property
-    def fine(self) -> bool:
-        """Whether there is nothing to do."""
-        return not self.mend
+    fine: bool = False
 
     def __str__(self) -> str:
-        return f"{'ok   ' if self.fine else 'FAULT'}  {self.what}: {self.found}" + (
-            "" if self.fine else f"\n       -> {self.mend}"
-        )
+        told = f"{self.what}: {self.found}"
+        return f"ok     {told}" if self.fine else f"FAULT  {told}\n       -> {self.mend}"
 
 
 def check(course: Course, environment: Path = ENVIRONMENT) -> list[Finding]:
     """Look at everything that a course needs."""
-    looks: tuple[Callable[[], Iterator[Finding]], ...] = (
-        _python,
-        lambda: _packages(environment),
-        _commands,
-        _kernel,
-        lambda: _folder(course),
-        lambda: _sources(course),
-        lambda: (Finding(old.file, f"names {old.name}, which has moved", old.mend) for old in old_names(course)),
-        lambda: _secrets(course),
-        lambda: _gradebook(course),
-    )
-    return [finding for look in looks for finding in look()]
+    installed = *_python(), *_packages(environment), *_commands(), *_kernel()
+    moved = (Finding(old.file, f"names {old.name}, which has moved", old.mend) for old in old_names(course))
+    return [*installed, *_folder(course), *_sources(course), *moved, *_secrets(course), *_gradebook(course)]
 
 
 def _python() -> Iterator[Finding]:
     version = ".".join(map(str, sys.version_info[:3]))
     least = ".".join(map(str, LEAST_PYTHON))
     mend = f"install Python {least} or newer, and make the environment again with it"
-    yield Finding("Python", version, "" if sys.version_info >= LEAST_PYTHON else mend)
+    yield Finding("Python", version, mend, sys.version_info >= LEAST_PYTHON)
 
 
 def _packages(environment: Path) -> Iterator[Finding]:
@@ -87,7 +73,8 @@ def _packages(environment: Path) -> Iterator[Finding]:
             wrong += 1
             yield Finding(name, f"{found}, needs {wanted}" if wanted else found, mend)
     if not wrong:
-        yield Finding("packages", f"all {len(pins)} as in {environment.name}" if environment.is_file() else "all there")
+        found = f"all {len(pins)} as in {environment.name}" if environment.is_file() else "all there"
+        yield Finding("packages", found, fine=True)
 
 
 def _commands() -> Iterator[Finding]:
@@ -95,7 +82,7 @@ def _commands() -> Iterator[Finding]:
     scripts = Path(sysconfig.get_path("scripts"))
     found = next((scripts / name for name in ("alembic", "alembic.exe") if (scripts / name).exists()), None)
     mend = f"{Path(sys.executable)} -m pip install --force-reinstall alembic"
-    yield Finding("alembic", str(found or f"not in {scripts}"), "" if found else mend)
+    yield Finding("alembic", str(found or f"not in {scripts}"), mend, bool(found))
 
 
 def _kernel() -> Iterator[Finding]:
@@ -109,9 +96,7 @@ def _kernel() -> Iterator[Finding]:
         return
     program = Path(words[0])
     own = not program.is_absolute() or program.parent == Path(sys.executable).parent
-    yield Finding(
-        "kernel python3", words[0] if own else f"{program} is another Python than this one", "" if own else mend
-    )
+    yield Finding("kernel python3", words[0] if own else f"{program} is another Python than this one", mend, own)
 
 
 def _folder(course: Course) -> Iterator[Finding]:
@@ -122,13 +107,12 @@ def _folder(course: Course) -> Iterator[Finding]:
     text = config.read_text(encoding="utf-8")
     careful = "CarefulExecute" in text or "CarefulExecute" not in CONFIG
     mend = "put primkit.course.executing.CarefulExecute into c.Autograde.autograde_preprocessors, as in a new course"
-    yield Finding(
-        "nbgrader_config.py", "ours" if careful else "runs submissions without limits", "" if careful else mend
-    )
+    found = "ours" if careful else "runs submissions without limits"
+    yield Finding("nbgrader_config.py", found, mend, careful)
     try:
         with tempfile.TemporaryFile(dir=course.root):
             pass
-        yield Finding("course folder", f"{course.root} can be written")
+        yield Finding("course folder", f"{course.root} can be written", fine=True)
     except OSError as error:
         yield Finding("course folder", f"{course.root}: {error.strerror}", "give yourself the right to write there")
 
@@ -137,10 +121,10 @@ def _sources(course: Course) -> Iterator[Finding]:
     for name in COPIED_FOLDERS:
         there = (course.root / name).is_dir()
         mend = f"copy notebooks/assignments/{name} of the project's folder into {course.root}"
-        yield Finding(f"{name}/", "there" if there else "missing", "" if there else mend)
+        yield Finding(f"{name}/", "there" if there else "missing", mend, there)
     if (course.root / "source").is_dir():
         sets = course.sets()
-        yield Finding("problem sets", ", ".join(sets) or "none", "" if sets else "copy them into source/")
+        yield Finding("problem sets", ", ".join(sets) or "none", "copy them into source/", bool(sets))
 
 
 def _secrets(course: Course) -> Iterator[Finding]:
@@ -151,10 +135,12 @@ def _secrets(course: Course) -> Iterator[Finding]:
             told, _, mend = str(error).partition(": ")
             yield Finding(what, told, mend or "see the first line of a new course's file")
             continue
-        yield Finding(what, f"{len(found)} students" if isinstance(found, list) else f"{len(found)} characters")
+        number = f"{len(found)} {'students' if isinstance(found, list) else 'characters'}"
+        yield Finding(what, number, fine=True)
         for name in course.sets() if what == "students.csv" else ():
             for fault in strangers(course, name):
-                yield Finding(f"submitted/{fault.student}/{name}", *fault.says.split("? ", 1))
+                told, _, mend = fault.says.partition("? ")
+                yield Finding(f"submitted/{fault.student}/{name}", told, mend)
     salt = course.root / "salt.txt"
     if os.name == "posix" and salt.is_file() and salt.stat().st_mode & 0o077:
         yield Finding("salt.txt", "others on this computer can read it", f"chmod 600 {salt}")
@@ -163,7 +149,7 @@ def _secrets(course: Course) -> Iterator[Finding]:
 def _gradebook(course: Course) -> Iterator[Finding]:
     path = course.root / "gradebook.db"
     if not path.exists():
-        yield Finding("gradebook.db", "not yet there: the first release makes it")
+        yield Finding("gradebook.db", "not yet there: the first release makes it", fine=True)
         return
     try:
         with sqlite3.connect(f"file:{path.as_posix()}?mode=ro", uri=True) as base:
@@ -176,4 +162,4 @@ def _gradebook(course: Course) -> Iterator[Finding]:
         mend = "put a copy from before back, or move it away, release and grade again: submitted/ holds all it needs"
         yield Finding("gradebook.db", sound if sound != "ok" else "is no gradebook", mend)
     else:
-        yield Finding("gradebook.db", "sound")
+        yield Finding("gradebook.db", "sound", fine=True)

@@ -22,7 +22,6 @@ import shutil
 import signal
 import site
 import tempfile
-from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -88,7 +87,7 @@ class CarefulExecute(Execute):  # type: ignore[misc]
             self.scratch = Path(scratch)
             self.given, self.work = self.scratch / "given", self.scratch / "work"
             shutil.copytree(folder, self.given, copy_function=shutil.copyfile)  # not who may write
-            self._personal(resources["nbgrader"]["student"])
+            self._place_scans(resources["nbgrader"]["student"])
             shutil.copytree(self.given, self.work, copy_function=shutil.copyfile)
             resources["metadata"]["path"] = str(self.work)
             try:
@@ -96,11 +95,11 @@ class CarefulExecute(Execute):  # type: ignore[misc]
             finally:
                 resources["metadata"]["path"] = str(folder)
                 self._end_leftovers()
-        self._numbers_only(nb)
+        self._fail_without_points(nb)
         nb.metadata["primkit"] = {"faults": self.faults}
         return nb, resources
 
-    def _personal(self, student: str) -> None:
+    def _place_scans(self, student: str) -> None:
         """Give the student's own scans and truth to a problem set that has scans."""
         if (self.given / SCANS).exists():
             world = personal_world(student, salt=Course(self.course).salt())
@@ -108,7 +107,7 @@ class CarefulExecute(Execute):  # type: ignore[misc]
             save_scans(personal_scans(world), self.given / SCANS)
             save_world(world, self.scratch / "truth.geojson")
 
-    def _numbers_only(self, nb: Any) -> None:
+    def _fail_without_points(self, nb: Any) -> None:
         """Fail hidden tests that show no number: nbgrader would give them all points."""
         for index, cell in enumerate(nb.cells):
             about = cell.metadata.get("nbgrader", {})
@@ -140,7 +139,7 @@ class CarefulExecute(Execute):  # type: ignore[misc]
         # The memory that a cell has taken would be missing to the others.
         if problem or full or (stopped and self._memory() > self.megabytes / 2):
             self._catch_up(index, resources)
-        self._tidy(index)
+        self._restore_files(index)
         return cell, resources
 
     def _get_timeout(self, cell: Any) -> Any:
@@ -164,14 +163,14 @@ class CarefulExecute(Execute):  # type: ignore[misc]
 
     def _catch_up(self, index: int, resources: Any) -> None:
         """Start another kernel, and run the cells up to here again, without those that are guilty."""
-        self._another_kernel()
+        self._restart_kernel()
         for earlier in range(index):
             cell = self.nb.cells[earlier]
             if cell.cell_type != "code" or not cell.source.strip() or earlier in self.guilty:
                 continue
-            problem = self._run(_copied(cell), resources, earlier)
+            problem = self._run(_copy_cell(cell), resources, earlier)
             self.nb.cells[earlier] = cell  # its outputs are those of the first time
-            self._tidy(earlier, told=True)
+            self._restore_files(earlier, told=True)
             if problem:  # this time it is guilty: once more, without it
                 self._blame(self.nb, earlier, *problem)
                 self.guilty.add(earlier)
@@ -200,9 +199,10 @@ class CarefulExecute(Execute):  # type: ignore[misc]
         cell = about.get("grade_id", f"cell {index + 1}")
         self.faults.append({"cell": cell, "name": name, "says": sentence})
 
-    def _tidy(self, index: int, *, told: bool = False) -> None:
+    def _restore_files(self, index: int, *, told: bool = False) -> None:
         """Put back what a cell has deleted or changed of the files it was given, and note it unless it is told."""
-        lost = [path for path in _files(self.given) if not _same(self.given / path, self.work / path)]
+        given = (path.relative_to(self.given) for path in sorted(self.given.rglob("*")) if path.is_file())
+        lost = [path for path in given if not _same(self.given / path, self.work / path)]
         if not lost:
             return
         whole = not self.work.is_dir()
@@ -211,7 +211,9 @@ class CarefulExecute(Execute):  # type: ignore[misc]
                 (self.work / path).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(self.given / path, self.work / path)
         if whole:
-            self._quietly(f"__import__('os').chdir({str(self.work)!r})")
+            with suppress(DeadKernelError, RuntimeError):
+                source = f"__import__('os').chdir({str(self.work)!r})"
+                self.wait_for_reply(self.kc.execute(source, silent=True, store_history=False))
         if told:
             return
         what = "the whole folder" if whole else ", ".join(sorted(map(str, lost)))
@@ -250,7 +252,7 @@ class CarefulExecute(Execute):  # type: ignore[misc]
             return psutil.Process(pid).memory_info().rss / MEGABYTE if pid else 0.0
         return 0.0
 
-    def _another_kernel(self) -> None:
+    def _restart_kernel(self) -> None:
         self.shutdown_kernel = "immediate"
         self._cleanup_kernel()
         self.km = self.create_kernel_manager()
@@ -263,10 +265,6 @@ class CarefulExecute(Execute):  # type: ignore[misc]
             with suppress(ProcessLookupError, PermissionError, AttributeError):
                 if group != os.getpgid(0):
                     os.killpg(group, signal.SIGKILL)
-
-    def _quietly(self, source: str) -> None:
-        with suppress(DeadKernelError, RuntimeError):
-            self.wait_for_reply(self.kc.execute(source, silent=True, store_history=False))
 
     def output(self, outs: Any, msg: Any, display_id: Any, cell_index: int) -> Any:
         """Keep what a cell says, up to a limit: an endless loop may print all the time."""
@@ -293,10 +291,6 @@ def _environment(home: Path, course: str) -> dict[str, str]:
     }
 
 
-def _files(folder: Path) -> Iterator[Path]:
-    return (path.relative_to(folder) for path in sorted(folder.rglob("*")) if path.is_file())
-
-
 def _same(given: Path, now: Path) -> bool:
     try:
         return filecmp.cmp(given, now, shallow=False)
@@ -315,7 +309,7 @@ def _failed_with(name: str, cell: Any) -> bool:
     return any(output.get("ename") == name for output in cell.outputs)
 
 
-def _copied(cell: Any) -> Any:
+def _copy_cell(cell: Any) -> Any:
     copy = type(cell)(cell)
     copy.outputs = []
     return copy

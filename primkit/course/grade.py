@@ -19,7 +19,7 @@ from typing import Any
 
 from .course import SANITIZE_STEPS, Course
 from .handed_in import Fault, file_faults, strangers, tree_hash
-from .handing_back import hand_back, waiting
+from .handing_back import hand_back, unmarked_answers
 from .moved import refuse_old_names
 from .running import nbgrader
 
@@ -58,13 +58,13 @@ def grade(
     journal = Journal(course, name)
     counts = Counter[str]()
     for number, student in enumerate(students, 1):
-        verdict, line = _one(course, name, student, journal, again)
+        verdict, line = _grade_one(course, name, student, journal, again)
         counts[verdict] += 1
         say(f"{number:4d} of {len(students)}  {student}: {line}")
     if counts["graded"]:
         made = nbgrader(course, "generate_feedback", name, "--force", log=course.reports(name) / "log" / "feedback.txt")
         say("feedback/ is ready" if made.code == 0 else f"feedback/ is not complete: {made.reason}")
-    open_cells = waiting(course, name)
+    open_cells = unmarked_answers(course, name)
     hand_back(course, name, journal.entries if counts["graded"] else journal.failed(), open_cells)
     same = tree_hash(*folders) == before
     took = time.monotonic() - start
@@ -80,7 +80,7 @@ def grade(
     return [*strangers(course, name), *journal.faults()]
 
 
-def _one(course: Course, name: str, student: str, journal: Journal, again: bool) -> tuple[str, str]:
+def _grade_one(course: Course, name: str, student: str, journal: Journal, again: bool) -> tuple[str, str]:
     """Grade one submission; return how it went, in one of three words and in a line."""
     folder = course.root / "submitted" / student / name
     before = tree_hash(folder, course.root / "source" / name, course.root / "grader")
@@ -95,7 +95,7 @@ def _one(course: Course, name: str, student: str, journal: Journal, again: bool)
             faults.append(Fault(student, "-", "not graded", f"nbgrader could not grade it: {done.reason}"))
     graded = not faults
     if graded:
-        faults += list(_noted(course, name, student))
+        faults += list(_read_faults(course, name, student))
     if tree_hash(folder, course.root / "source" / name, course.root / "grader") != before:
         faults.append(
             Fault(student, "-", "changed files", "while it ran, files in submitted/, source/ or grader/ changed")
@@ -107,7 +107,7 @@ def _one(course: Course, name: str, student: str, journal: Journal, again: bool)
     return "graded", "; ".join(filter(None, [f"graded in {time.monotonic() - start:.0f} s", told]))
 
 
-def _noted(course: Course, name: str, student: str) -> Iterator[Fault]:
+def _read_faults(course: Course, name: str, student: str) -> Iterator[Fault]:
     """Yield what happened while the cells ran."""
     for notebook in course.notebooks(name):
         path = course.root / "autograded" / student / name / f"{notebook}.ipynb"

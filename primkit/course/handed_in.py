@@ -49,7 +49,7 @@ def file_faults(course: Course, name: str, student: str) -> list[Fault]:
     return [Fault(student, where, short, says) for where, short, says in faults]
 
 
-def listed(course: Course) -> list[str]:
+def listed_students(course: Course) -> list[str]:
     """Return the ids in the list of students; none while the list cannot be read, which ``check`` says."""
     try:
         return course.students()
@@ -59,7 +59,7 @@ def listed(course: Course) -> list[str]:
 
 def strangers(course: Course, name: str) -> list[Fault]:
     """Return a fault for each who handed in and is not in the list of students; none while the list is empty."""
-    students = listed(course)
+    students = listed_students(course)
     unknown = [student for student in course.submitted(name) if students and student not in students]
     says = f"is not in {STUDENTS}: a typing error? rename the folder, or add a line and release again"
     return [Fault(student, "-", "not in the list", says) for student in unknown]

@@ -29,7 +29,7 @@ PAGE = """\
 """
 
 
-def waiting(course: Course, name: str) -> dict[str, list[str]]:
+def unmarked_answers(course: Course, name: str) -> dict[str, list[str]]:
     """Return the answers that a person has still to mark: student -> names of cells."""
     from nbgrader.api import Gradebook, MissingEntry
 
@@ -55,27 +55,27 @@ def hand_back(course: Course, name: str, entries: Mapping[str, Any], open_cells:
             page = course.root / "feedback" / student / name / f"{notebook}.html"
             if not entry["graded"]:
                 page.parent.mkdir(parents=True, exist_ok=True)
-                says = " ".join(_sentence(Fault(**fault)) for fault in entry["faults"])
+                says = " ".join(_as_sentence(Fault(**fault)) for fault in entry["faults"])
                 page.write_text(PAGE.format(escape(notebook), escape(says)), encoding="utf-8")
             elif page.is_file():
                 html = page.read_text(encoding="utf-8")
                 html = re.sub(r'(<a href="#([\w.-]+)">)Test cell</a>', r"\1\2</a>", html)  # in the page's head
                 if open_cells.get(student):
-                    html = _marked_later(html, open_cells[student])
+                    html = _say_unmarked(html, open_cells[student])
                 page.write_text(html, encoding="utf-8")
 
 
-def _sentence(fault: Fault) -> str:
+def _as_sentence(fault: Fault) -> str:
     """Return a fault as a sentence for the student: with the file's name, where it does not say it itself."""
     if fault.cell == "-" or fault.cell in fault.says:
         return f"{fault.says[:1].upper()}{fault.says[1:]}."
     return f"{fault.cell} {fault.says}."
 
 
-def _marked_later(html: str, cells: Iterable[str]) -> str:
+def _say_unmarked(html: str, cells: Iterable[str]) -> str:
     """Say of answers that they are not yet marked, at the head of a page and beside their points.
 
-    >>> _marked_later('<a href="#trust">Written response</a> (Score: 0.0 / 4.0)', ["trust"])
+    >>> _say_unmarked('<a href="#trust">Written response</a> (Score: 0.0 / 4.0)', ["trust"])
     '<a href="#trust">Written response</a> (not yet marked, of 4.0)'
     """
     for cell in cells:

@@ -76,7 +76,7 @@ def secrets_of(folder: Path) -> Secrets:
     secrets, public = Secrets(), set[Piece]()
     for path in sorted((folder / "source").rglob("*.ipynb")):
         for cell in _cells(path):
-            shown, hidden = _split(_text(cell.get("source", "")))
+            shown, hidden = _split(_join(cell.get("source", "")))
             public.update(pieces(shown))
             for part in hidden:
                 name = cell.get("metadata", {}).get("nbgrader", {}).get("grade_id", "a cell")
@@ -129,7 +129,7 @@ def pieces(text: str) -> Iterator[Piece]:
     for version in _versions(text):
         tokens = _tokens(version)
         for start in range(len(tokens) - PIECE_TOKENS + 1):
-            piece = _renamed(tokens[start : start + PIECE_TOKENS])
+            piece = _rename_variables(tokens[start : start + PIECE_TOKENS])
             if piece not in seen:
                 seen.add(piece)
                 yield piece
@@ -151,7 +151,7 @@ def _tokens(text: str) -> list[str]:
     return TOKEN.findall(COMMENT.sub("", text))
 
 
-def _renamed(tokens: Sequence[str]) -> Piece:
+def _rename_variables(tokens: Sequence[str]) -> Piece:
     """Return tokens with numbers in the place of variables; attributes and known names stay."""
     names: dict[str, str] = {}
     return tuple(
@@ -173,11 +173,11 @@ def find_leaks(paths: Iterable[Path], secrets: Secrets) -> list[Leak]:
         if not path.exists():
             raise ValueError(f"there is no {path} to look for leaks in")
         for name, place, text in _texts(path):
-            leaks += [Leak(name, place, what) for what in _found(text, secrets, shapes)]
+            leaks += [Leak(name, place, what) for what in _search(text, secrets, shapes)]
     return leaks
 
 
-def _found(text: str, secrets: Secrets, shapes: set[Piece]) -> Iterator[str]:
+def _search(text: str, secrets: Secrets, shapes: set[Piece]) -> Iterator[str]:
     """Yield what stands in a text."""
     yield from [f"the marker {mark}" for mark in MARKS if mark in text][:1]
     yield from (f"{what} stands there" for word, what in secrets.words.items() if word in text)
@@ -187,7 +187,7 @@ def _found(text: str, secrets: Secrets, shapes: set[Piece]) -> Iterator[str]:
         shape = _shape(tokens)
         for start in range(len(tokens) - PIECE_TOKENS + 1):
             if shape[start : start + PIECE_TOKENS] in shapes:  # most are told by this alone
-                held.add(_renamed(tokens[start : start + PIECE_TOKENS]))
+                held.add(_rename_variables(tokens[start : start + PIECE_TOKENS]))
     for (folder, where), solution in secrets.solutions.items():
         share = len(solution & held) / len(solution)
         if share >= LEAK_SHARE[folder]:
@@ -229,14 +229,14 @@ def _of_notebook(nb: Any) -> Iterator[tuple[str, str]]:
     """Yield the places of a notebook and their texts."""
     yield from _strings("the notebook's metadata", nb.get("metadata", {}))
     for number, cell in enumerate(nb["cells"], 1):
-        yield f"cell {number}", _text(cell.get("source", ""))
+        yield f"cell {number}", _join(cell.get("source", ""))
         yield from _strings(f"cell {number}, metadata", cell.get("metadata", {}))
         for bundle in (cell.get("attachments") or {}).values():
-            yield from ((f"cell {number}, attachment", _decoded(data)) for data in bundle.values())
+            yield from ((f"cell {number}, attachment", _decode(data)) for data in bundle.values())
         for output in cell.get("outputs") or ():
             for kind, data in (output.get("data") or {}).items():
                 if kind not in PICTURE_TYPES:
-                    text = html.unescape(_text(data)) if isinstance(data, (str, list)) else json.dumps(data)
+                    text = html.unescape(_join(data)) if isinstance(data, (str, list)) else json.dumps(data)
                     yield f"cell {number}, output", text
             yield from _strings(f"cell {number}, output", {k: v for k, v in output.items() if k != "data"})
 
@@ -257,15 +257,15 @@ def _strings(place: str, value: Any) -> Iterator[tuple[str, str]]:
                 yield from _strings(place, inner)
 
 
-def _decoded(data: Any) -> str:
-    text = _text(data)
+def _decode(data: Any) -> str:
+    text = _join(data)
     try:
         return base64.b64decode(text, validate=True).decode("utf-8", "replace")
     except (binascii.Error, ValueError):
         return text
 
 
-def _text(source: Any) -> str:
+def _join(source: Any) -> str:
     return "".join(source) if isinstance(source, list) else str(source)
 
 

@@ -86,7 +86,7 @@ def overview(course: Course, name: str) -> Overview:
     lines: dict[tuple[str, str], Line] = {}
     scores: dict[str, float] = {}
     wrong: list[tuple[str, str, str, str, str]] = []
-    cells = {student: _cells(course, name, student) for student in students}
+    cells = {student: _read_cells(course, name, student) for student in students}
     tasks = {cell: mark for marked in cells.values() for cell, (mark, _) in marked.items() if mark}
     with Gradebook(f"sqlite:///{(course.root / 'gradebook.db').as_posix()}") as book:
         of = float(book.find_assignment(name).max_score)
@@ -99,30 +99,22 @@ def overview(course: Course, name: str) -> Overview:
             for grade in (grade for notebook in submission.notebooks for grade in notebook.grades):
                 mark, error = cells[student].get(grade.cell.name, (None, None))
                 like = tasks.get(grade.cell.name)
-                line = lines.setdefault(
-                    (grade.cell.name, ""), Line(like["task"] if like else grade.cell.name, "", grade.max_score)
-                )
+                called = like["task"] if like else grade.cell.name
+                line = lines.setdefault((grade.cell.name, ""), Line(called, "", grade.max_score))
                 line.points.append(float(grade.score))
                 line.open += bool(grade.needs_manual_grade)
                 if like:
-                    wrong += _parts(lines, grade.cell.name, student, mark, like, error)
+                    wrong += _add_parts(lines, grade.cell.name, student, mark, like, error)
                 elif error and grade.score < grade.max_score:
-                    called, says = _visible(grade.cell.name, *error)
+                    called, says = _name_error(grade.cell.name, *error)
                     line.wrong[called] += 1
                     wrong.append((student, grade.cell.name, "", called, says))
-    return Overview(
-        name,
-        len(course.submitted(name)),
-        len(scores),
-        of,
-        scores,
-        tuple(lines.values()),
-        (*strangers(course, name), *journal.faults()),
-        tuple(wrong),
-    )
+    faults = (*strangers(course, name), *journal.faults())
+    handed_in = len(course.submitted(name))
+    return Overview(name, handed_in, len(scores), of, scores, tuple(lines.values()), faults, tuple(wrong))
 
 
-def _parts(
+def _add_parts(
     lines: dict[tuple[str, str], Line], cell: str, student: str, mark: Any, like: Any, error: tuple[str, str] | None
 ) -> Iterator[tuple[str, str, str, str, str]]:
     """Add the parts of one hidden test, and yield those that are not right."""
@@ -141,7 +133,7 @@ def _parts(
             yield student, like["task"], part["says"], name, says
 
 
-def _cells(course: Course, name: str, student: str) -> dict[str, tuple[Any, tuple[str, str] | None]]:
+def _read_cells(course: Course, name: str, student: str) -> dict[str, tuple[Any, tuple[str, str] | None]]:
     """Return for each graded code cell the mark that it shows, or its error."""
     found: dict[str, tuple[Any, tuple[str, str] | None]] = {}
     for notebook in course.notebooks(name):
@@ -149,16 +141,16 @@ def _cells(course: Course, name: str, student: str) -> dict[str, tuple[Any, tupl
         for cell in json.loads(path.read_text(encoding="utf-8"))["cells"] if path.is_file() else ():
             about = cell["metadata"].get("nbgrader", {})
             if about.get("grade") and cell["cell_type"] == "code":
-                found[about["grade_id"]] = _shown(cell["outputs"])
+                found[about["grade_id"]] = _read_outputs(cell["outputs"])
     return found
 
 
-def _visible(cell: str, name: str, says: str) -> tuple[str, str]:
+def _name_error(cell: str, name: str, says: str) -> tuple[str, str]:
     """Return a name and words for the error of a visible test, as a teacher would say them.
 
-    >>> _visible("half-visible", "AssertionError", "got 2, expected 1")
+    >>> _name_error("half-visible", "AssertionError", "got 2, expected 1")
     ('got 2, expected 1', 'got 2, expected 1')
-    >>> _visible("half-visible", "NameError", "name 'half' is not defined")
+    >>> _name_error("half-visible", "NameError", "name 'half' is not defined")
     ('no such function', "name 'half' is not defined")
     """
     if name in ("KeyboardInterrupt", "CellTimeoutError"):
@@ -169,7 +161,7 @@ def _visible(cell: str, name: str, says: str) -> tuple[str, str]:
     return (shorten(words, VISIBLE_LETTERS, placeholder=" ...") if name == "AssertionError" and words else name), says
 
 
-def _shown(outputs: Sequence[Any]) -> tuple[Any, tuple[str, str] | None]:
+def _read_outputs(outputs: Sequence[Any]) -> tuple[Any, tuple[str, str] | None]:
     """Return the mark among a cell's outputs; or the name and words of its error."""
     errors = [output for output in outputs if output["output_type"] == "error"]
     marks = [output["data"][MIME] for output in outputs if MIME in output.get("data", {})]

@@ -18,8 +18,8 @@ from ..plots.story import save_figure
 from ..table import Table, as_csv
 from .course import Course
 from .grade import Journal
-from .handed_in import listed
-from .handing_back import state, waiting
+from .handed_in import listed_students
+from .handing_back import state, unmarked_answers
 from .overview import Line, Overview, overview
 from .running import nbgrader
 
@@ -45,13 +45,13 @@ def report(course: Course, name: str) -> Iterator[str]:
     figure = plot_class(
         name,
         seen.graded,
-        [(line.task, line.part, line.right, (_usual(line) or [("", 0)])[0]) for line in parts if not line.open],
+        [(line.task, line.part, line.right, (_usual_faults(line) or [("", 0)])[0]) for line in parts if not line.open],
     )
     save_figure(figure, folder / "overview.png")
     exported = nbgrader(course, "export", f"--to={folder / 'grades.csv'}")
     if exported.code == 0:
-        _with_states(course, folder / "grades.csv")
-    yield from _said(seen)
+        _add_states(course, folder / "grades.csv")
+    yield from _tell(seen)
     yield ""
     yield f"Wrote  {', '.join([*tables, 'overview.png'])} in {folder}"
     yield (
@@ -61,15 +61,15 @@ def report(course: Course, name: str) -> Iterator[str]:
     )
 
 
-def _with_states(course: Course, path: Path) -> None:
+def _add_states(course: Course, path: Path) -> None:
     """Add a last column to nbgrader's export: whether a 0 is for an answer, for none, or for a broken file."""
     with open(path, encoding="utf-8", newline="") as file:
         head, *rows = list(csv.reader(file))
-    students = listed(course)
+    students = listed_students(course)
     sets = {name for name in course.sets() if (course.root / "release" / name).is_dir()}
     journals = {name: Journal(course, name).entries for name in sets}
     handed_in = {name: set(course.submitted(name)) for name in sets}
-    open_cells = {name: waiting(course, name) for name in sets}
+    open_cells = {name: unmarked_answers(course, name) for name in sets}
     for row in rows:
         name, student = row[head.index("assignment")], row[head.index("student_id")]
         if name in sets:
@@ -84,12 +84,12 @@ def _with_states(course: Course, path: Path) -> None:
     write_atomically(path, _csv([*head, "state"], rows))
 
 
-def _usual(line: Line) -> list[tuple[str, int]]:
+def _usual_faults(line: Line) -> list[tuple[str, int]]:
     """Return the most frequent wrong answers, the most frequent first; of as frequent ones, Python's errors last."""
     return sorted(line.wrong.items(), key=lambda item: (-item[1], item[0][:1].isupper(), item[0]))[:USUAL_FAULTS]
 
 
-def _said(seen: Overview) -> Iterator[str]:
+def _tell(seen: Overview) -> Iterator[str]:
     title = f"{seen.name}: {seen.handed_in} handed in, {seen.graded} graded; mean {seen.mean:.1f} of {seen.of:g} points"
     rows = []
     for line in (line for line in seen.lines if not line.part):
@@ -103,7 +103,7 @@ def _said(seen: Overview) -> Iterator[str]:
 
 
 def _row(name: str, line: Line) -> tuple[str, ...]:
-    usual = "; ".join(f"{count} x {fault}" for fault, count in _usual(line)) if line.part or line.wrong else ""
+    usual = "; ".join(f"{count} x {fault}" for fault, count in _usual_faults(line)) if line.part or line.wrong else ""
     if line.open:
         usual = f"{line.open} to be marked by hand" + (f"; {usual}" if usual else "")
     return name, f"{line.mean:.2f} of {line.of:g}", f"{100 * line.right:.0f} %", usual
@@ -111,19 +111,19 @@ def _row(name: str, line: Line) -> tuple[str, ...]:
 
 def _overview_rows(seen: Overview) -> Iterator[Sequence[Any]]:
     for line in seen.lines:
-        usual = [entry for pair in _usual(line) for entry in pair]
+        usual = [entry for pair in _usual_faults(line) for entry in pair]
         numbers = (line.of, len(line.points), round(line.mean, 4), round(line.right, 4), line.open)
         yield line.task, line.part, *numbers, *usual, *[""] * (2 * USUAL_FAULTS - len(usual))
 
 
 def _csv(header: Sequence[str], rows: Iterable[Iterable[Any]]) -> bytes:
-    return as_csv(header, ([_harmless(cell) for cell in row] for row in rows)).encode()
+    return as_csv(header, ([_escape_formula(cell) for cell in row] for row in rows)).encode()
 
 
-def _harmless(cell: Any) -> Any:
+def _escape_formula(cell: Any) -> Any:
     """Return a cell that no spreadsheet takes for a formula: students choose some of these words.
 
-    >>> _harmless("=1+1"), _harmless("-"), _harmless(-0.5)
+    >>> _escape_formula("=1+1"), _escape_formula("-"), _escape_formula(-0.5)
     ("'=1+1", '-', -0.5)
     """
     return f"'{cell}" if isinstance(cell, str) and len(cell) > 1 and cell[0] in "=+-@\t\r" else cell

@@ -33,38 +33,18 @@ LEAST_GAIN = 0.5  # squares: a view that shows less shows nothing
 
 @dataclass(frozen=True)
 class View:
-    """A square to scan from.
+    """A square to scan from, and what the scan is expected to show, in unseen squares."""
 
-    Parameters
-    ----------
-    square : tuple of int
-        Its row and column.
-    gain : float
-        What the scan is expected to show, in unseen squares.
-    """
-
-    square: tuple[int, int]
+    square: tuple[int, int]  # its row and column
     gain: float
 
 
 def next_view(worth: Floats, opaque: Bools, ways: Ways, lidar: Lidar, been: Bools) -> View | None:
     """Return the reachable view that shows most for its time; None when no new one shows anything.
 
-    The robot does not scan where an outline may stand nearer than the sensor's least distance: such an outline would
-    go unnoticed, and so would what is behind.
-
-    Parameters
-    ----------
-    worth : array, shape (N, N)
-        What each square is worth to be seen.
-    opaque : array of bool, shape (N, N)
-        Squares at which a beam ends.
-    ways : Ways
-        Ways to the squares.
-    lidar : Lidar
-        Its beams and its limits.
-    been : array of bool, shape (N, N)
-        Squares that it has scanned from: a second scan shows the same.
+    ``worth``: of each square to be seen; ``opaque``: where beams end; ``been``: scanned from already; all (N, N). The
+    robot does not scan where an outline may stand nearer than the sensor's least distance: it would go unnoticed, and
+    so would what is behind.
     """
     lattice = np.zeros(ways.fits.shape, dtype=bool)
     lattice[VIEW_SPACING // 2 :: VIEW_SPACING, VIEW_SPACING // 2 :: VIEW_SPACING] = True

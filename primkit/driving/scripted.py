@@ -83,7 +83,7 @@ def scripted_route(world: World, *, rng: int | np.random.Generator | None = None
     check_type(world, World, "world must be a World")
     generator = as_rng(rng)
     start = start_pose(world)
-    return Route(start, _steered(world, start, _tour(world, start[:2], generator), generator))
+    return Route(start, _steer(world, start, _tour(world, start[:2], generator), generator))
 
 
 def drives_on(worlds: Mapping[str, World], *, seed: int = 0) -> dict[str, Floats]:
@@ -121,9 +121,9 @@ def _tour(world: World, start: Floats, rng: np.random.Generator) -> Floats:
     while rings:
         gaps = [np.nan_to_num(np.hypot(*(ring - way[-1]).T), nan=np.inf) for ring in rings]
         nearest = int(np.argmin([gap.min() for gap in gaps]))
-        for place in _in_order(rings.pop(nearest), gaps[nearest], rng):
+        for place in _order_ring(rings.pop(nearest), gaps[nearest], rng):
             way += board.way(way[-1], place)
-    return _evenly(np.array(way), WAY_STEP)
+    return _subdivide(np.array(way), WAY_STEP)
 
 
 def _ring(world: World, shape: Shape, rng: np.random.Generator) -> Floats:
@@ -145,7 +145,7 @@ def _ring(world: World, shape: Shape, rng: np.random.Generator) -> Floats:
     return ring
 
 
-def _in_order(ring: Floats, gaps: Floats, rng: np.random.Generator) -> Floats:
+def _order_ring(ring: Floats, gaps: Floats, rng: np.random.Generator) -> Floats:
     """Return the places of a ring in the order of driving, shape (N, 2).
 
     All around from the nearest one, one way or the other; where a part is missing, from the nearer end to the other.
@@ -207,11 +207,11 @@ class _Board:
 
     def sees(self, start: Floats, end: Floats) -> bool:
         """Tell whether the straight way between two places is free."""
-        places = _evenly(np.array([start, end]), WAY_STEP)
+        places = _subdivide(np.array([start, end]), WAY_STEP)
         return bool((clearance(self.world, places) >= WAY_CLEARANCE - WAY_STEP / 2).all())
 
 
-def _evenly(way: Floats, step: float) -> Floats:
+def _subdivide(way: Floats, step: float) -> Floats:
     """Return places along a way, at most a step apart, its own ones among them, shape (N, 2)."""
     parts = [
         a + (b - a) * np.linspace(0, 1, 1 + int(np.ceil(np.hypot(*(b - a)) / step)))[1:, None] for a, b in pairwise(way)
@@ -222,7 +222,7 @@ def _evenly(way: Floats, step: float) -> Floats:
 # --- the steering -------------------------------------------------------------------------------------------
 
 
-def _steered(world: World, start: Floats, way: Floats, rng: np.random.Generator) -> Floats:
+def _steer(world: World, start: Floats, way: Floats, rng: np.random.Generator) -> Floats:
     """Return the wheel speeds that bring the robot along a way, shape (T, 2)."""
     pose, here, slip = start, 0, 0.0
     wheels: list[tuple[float, float]] = []
@@ -232,7 +232,7 @@ def _steered(world: World, start: Floats, way: Floats, rng: np.random.Generator)
         here = _nearest(way, here, pose, ahead)
         aim = way[min(here + ahead, len(way) - 1)]
         slip = STEERING_MEMORY * slip + np.sqrt(1 - STEERING_MEMORY**2) * rng.normal(0, STEERING_STD)
-        held = _set(world, pose, aim, speed, slip)
+        held = _choose_wheels(world, pose, aim, speed, slip)
         for _ in range(PERIODS_HELD):
             pose, _ = advance(world, pose, held, PERIOD)
             wheels.append(held)
@@ -245,7 +245,7 @@ def _nearest(way: Floats, here: int, pose: Floats, ahead: int) -> int:
     return here + int(np.hypot(*(window - pose[:2]).T).argmin())
 
 
-def _set(world: World, pose: Floats, aim: Floats, speed: float, slip: float) -> tuple[float, float]:
+def _choose_wheels(world: World, pose: Floats, aim: Floats, speed: float, slip: float) -> tuple[float, float]:
     """Return the wheel speeds towards a place: slower the more it must turn, on the spot where it would touch."""
     x, y, heading = pose
     off = float(np.arctan2(aim[1] - y, aim[0] - x) - heading + slip)

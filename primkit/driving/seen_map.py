@@ -40,13 +40,7 @@ OUTLINE_STEP = 0.004  # m: outlines are looked at in steps of this length
 
 
 class SeenMap:
-    """What one robot knows of its board.
-
-    Parameters
-    ----------
-    size : float
-        Side of the board in metres; the robot knows where the board ends.
-    """
+    """What one robot knows of its board; it knows where the board, ``size`` metres wide, ends."""
 
     def __init__(self, size: float) -> None:
         self.size = size
@@ -79,12 +73,12 @@ class SeenMap:
         pose, ranges, hit = one.poses[0], one.ranges[0], one.hits[0]
         likely_free = np.where(hit, ranges - BEFORE_A_HIT, range_max)
         surely_free = np.where(hit | self._ring_is_free(one, range_min), likely_free, 0.0)
-        likely, surely = self._within(pose, likely_free), self._within(pose, surely_free)
+        likely, surely = self._reached(pose, likely_free), self._reached(pose, surely_free)
         around = np.hypot(*np.moveaxis(self.centers - pose[:2], -1, 0))
         self.seen |= surely | (around <= BODY)  # nothing is where the robot is
         self.free |= likely | (around <= BODY)
         self._passes += surely.astype(np.int64)
-        np.add.at(self._hits, self.index(joined(one)), 1)
+        np.add.at(self._hits, self.index(join_hits(one)), 1)
         self.free &= ~self.wall
 
     def _ring_is_free(self, one: Scans, range_min: float) -> Bools:
@@ -95,7 +89,7 @@ class SeenMap:
         clear: Bools = np.all(self.free[self.index(ways)], axis=0)
         return clear
 
-    def _within(self, pose: Floats, reach: Floats) -> Bools:
+    def _reached(self, pose: Floats, reach: Floats) -> Bools:
         """Tell which squares' centres are nearer than the shorter of the two beams that they lie between."""
         x, y = np.moveaxis(self.centers - pose[:2], -1, 0)
         beam = np.mod(np.arctan2(y, x) - pose[2], 2 * np.pi) / (2 * np.pi / len(reach))
@@ -125,7 +119,7 @@ class SeenMap:
         return large
 
 
-def joined(one: Scans) -> Floats:
+def join_hits(one: Scans) -> Floats:
     """Return a scan's hits and, between neighbouring hits on one outline, points half a square apart, shape (N, 2)."""
     bearings, ranges = one.poses[0, 2] + one.angles, np.where(one.hits[0], one.ranges[0], np.nan)
     hits = one.poses[0, :2] + ranges[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)])

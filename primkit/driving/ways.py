@@ -37,27 +37,13 @@ TURN_SPEED = 2 * DRIVE_SPEED / AXLE  # rad/s, on the spot
 
 @dataclass(frozen=True)
 class Ways:
-    """The shortest ways from one place to all squares.
-
-    Parameters
-    ----------
-    board : SeenMap
-        The map that they lead through.
-    room : array, shape (N, N)
-        How far the centre of each square is from the nearest that is not known to be free, metres.
-    fits : array of bool, shape (N, N)
-        Squares that the robot can stand on.
-    length : array, shape (N, N)
-        How far it is, metres; infinite where no way leads.
-    before : array of int, shape (N, N)
-        The square before each on its way, by its number; negative where there is none.
-    """
+    """The shortest ways from one place to all squares of a map; arrays of shape (N, N)."""
 
     board: SeenMap
-    room: Floats
-    fits: Bools
-    length: Floats
-    before: NDArray[np.int64]
+    room: Floats  # m from each square's centre to the nearest that is not known to be free
+    fits: Bools  # where the robot can stand
+    length: Floats  # m of the way there; infinite where none leads
+    before: NDArray[np.int64]  # number of the square before each on its way; negative where there is none
 
     def to(self, square: tuple[int, int]) -> Floats:
         """Return the corners of the shortest way to a square, shape (K, 2), metres; the start is left out."""
@@ -146,14 +132,8 @@ def _neighbours(shape: tuple[int, ...], i: int, j: int) -> tuple[Window, Window]
 def wheels_along(pose: Floats, way: Floats) -> Floats:
     """Return the wheel speeds that lead from a pose along a way, a pair for each period, shape (T, 2), rad/s.
 
-    Before each stretch the robot turns on the spot; each turn and each stretch takes whole periods.
-
-    Parameters
-    ----------
-    pose : array, shape (3,)
-        x [m], y [m], heading [rad].
-    way : array, shape (K, 2)
-        The way's corners and its end, metres.
+    ``way``: its corners and its end, shape (K, 2), metres. Before each stretch the robot turns on the spot; each turn
+    and each stretch takes whole periods.
     """
     (x, y, heading), wheels = pose.tolist(), [np.empty((0, 2))]
     for to_x, to_y in way.tolist():

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from primkit import Line
-from primkit.checks.edges import best_of, fitted, near, through
+from primkit.checks.edges import best_of, fit_best, near, through
 
 
 def through_by_meeting_both(p, q):
@@ -167,7 +167,7 @@ def all_pairs(points, threshold, trials, rng):
     if not lines:
         return None
     inliers = max((near(points, line, threshold) for line in lines), key=np.count_nonzero)
-    line = fitted(points[inliers])
+    line = fit_best(points[inliers])
     return line, near(points, line, threshold)
 
 
@@ -184,7 +184,7 @@ def loop(points, threshold, trials, rng, keep="best", refit=True, anew=True):
             kept = line, inliers
     if kept is None or not refit:
         return kept
-    line = fitted(points[kept[1]])
+    line = fit_best(points[kept[1]])
     return line, near(points, line, threshold) if anew else kept[1]
 
 
@@ -198,7 +198,7 @@ def fixed_point(points, threshold, trials, rng):
         return None
     line, inliers = found
     for _ in range(20):
-        line = Line(*fitted(points[inliers]))
+        line = Line(*fit_best(points[inliers]))
         inliers = near(points, line, threshold)
     return [line, inliers.tolist()]
 
@@ -272,9 +272,9 @@ ANSWERS = {
             "inliers of the sample": (with_faults(anew=False), "take them anew after the refit"),
             "never none": (never_none, "Where no two points differ"),
             "nothing": (lambda p, t, n, rng: None, "is there a return?"),
-            "line alone": (lambda p, t, n, rng: fitted(p), "expected a line (angle, offset) and True or False"),
+            "line alone": (lambda p, t, n, rng: fit_best(p), "expected a line (angle, offset) and True or False"),
             "all points": (
-                lambda p, t, n, rng: fitted(p) and (fitted(p), near(p, fitted(p), t)),
+                lambda p, t, n, rng: fit_best(p) and (fit_best(p), near(p, fit_best(p), t)),
                 "is the best trial kept",
             ),
         },

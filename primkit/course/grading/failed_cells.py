@@ -24,7 +24,7 @@ def watch() -> None:
     def after(result: Any) -> None:
         error = result.error_before_exec or result.error_in_exec
         if error is not None:
-            failed[result.info.raw_cell] = _told(error, shell.user_ns)
+            failed[result.info.raw_cell] = _describe(error, shell.user_ns)
 
     shell.events.register("post_run_cell", after)
 
@@ -43,17 +43,17 @@ def _shell() -> Any:
     return get_ipython()
 
 
-def _told(error: BaseException, scope: dict[str, Any]) -> tuple[str, str]:
+def _describe(error: BaseException, scope: dict[str, Any]) -> tuple[str, str]:
     """Return an error's name; and its line and words."""
     kind = type(error).__name__
-    line = error.lineno if isinstance(error, SyntaxError) else _line(error.__traceback__, scope)
+    line = error.lineno if isinstance(error, SyntaxError) else _line_of(error.__traceback__, scope)
     words = error.msg if isinstance(error, SyntaxError) else str(error)
     where = f" in line {line}" if line else ""
     what = f": {' '.join(words.split())[:120]}" if words else ""
     return kind, f"{kind}{where}{what}"
 
 
-def _line(frame: TracebackType | None, scope: dict[str, Any]) -> int | None:
+def _line_of(frame: TracebackType | None, scope: dict[str, Any]) -> int | None:
     """Return the line of the cell itself in a traceback."""
     while frame is not None and frame.tb_frame.f_globals is not scope:
         frame = frame.tb_next

@@ -60,7 +60,7 @@ class Part:
         try:
             # What is printed to stderr would count as a failed cell.
             with redirect_stderr(io.StringIO()), TimeLimit(seconds):
-                return _named(self.check(function))
+                return _name_fault(self.check(function))
         except OutOfTime:
             says = f"{name} did not end within {seconds:g} s: is there a loop that never ends, or is it too slow?"
             return Answer("error", says, "out of time")
@@ -143,14 +143,14 @@ class Task:
         seconds = as_positive(seconds, "seconds")
         if isinstance(function, str):
             if function not in (scope or {}):
-                missing = _missing(function)
+                missing = _explain_missing(function)
                 return Mark(self.name, tuple(Row(part.says, part.points, missing) for part in self.parts))
             function = (scope or {})[function]
         rows = (Row(part.says, part.points, part.answer(function, seconds)) for part in self.parts)
         return Mark(self.name, tuple(rows))
 
 
-def _missing(name: str) -> Answer:
+def _explain_missing(name: str) -> Answer:
     """Return why there is no function: its cell has failed, or it has another name, or none was written."""
     failed = failure(name)
     if failed is None:
@@ -160,7 +160,7 @@ def _missing(name: str) -> Answer:
     return Answer("error", f"there is no function {name}: its cell stops with {told}.", f"its cell stops with {kind}")
 
 
-def _named(answer: Answer) -> Answer:
+def _name_fault(answer: Answer) -> Answer:
     """Name what is wrong in any task: nothing is returned, or something of another form than was asked for."""
     if answer.verdict != "wrong" or answer.fault is not None or not ALL_WRONG.match(answer.says):
         return answer
