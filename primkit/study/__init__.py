@@ -32,13 +32,13 @@ from .oracle import ORACLE, Oracle, oracle_fit, shares_seen, told_points
 from .paper_table import Line
 from .published import PUBLISHED, rows_as_csv, tables, write_tables
 from .row import Row, Score
-from .seen_table import SeenLine, seen_table
+from .seen_table import seen_table
 
 __all__ = ["run_study", "on_cluster", "METHODS", "maps_in", "Experiment", "run", "Run", "perform", "Row", "Score"]
 __all__ += ["tables", "Line", "PUBLISHED", "rows_as_csv", "write_tables", "Estimate"]
 __all__ += ["JOURNAL", "make_folder", "n_rows"]
 __all__ += ["ORACLE", "Oracle", "told_points", "oracle_fit", "shares_seen"]
-__all__ += ["seen_table", "SeenLine"]
+__all__ += ["seen_table"]
 __all__ += ["accuracy_study", "run_accuracy", "AccuracyTable", "AccuracyLine", "accuracy_as_csv"]
 __all__ += ["run_partial", "PartialLine", "SWEEPS", "REMEDIES", "UNTUNED"]
 __all__ += ["wander", "scripted_route", "drives_on"]
