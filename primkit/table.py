@@ -51,8 +51,8 @@ class Table:
         What the rows tell: objects with all their numbers.
     numbers : sequence of sequences
         What ``csv()`` writes: the names of its columns, then its rows.
-    file : str
-        What the CSV is called in a study's folder.
+    name, file : str
+        What programs call it, and its CSV in a study's folder.
     """
 
     header: Sequence[str]
@@ -62,6 +62,7 @@ class Table:
     folds: Sequence[int] = ()
     lines: Sequence[Any] = ()
     numbers: Sequence[Sequence[Any]] = ()
+    name: str = ""
     file: str = ""
 
     def csv(self) -> str:
