@@ -31,7 +31,7 @@ NOTE_WIDTH = 80  # letters in a line of a plain terminal
 CSV_DIGITS = 6  # after the point: far more than 34 maps can tell, and the same on every machine
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Table:
     """Rows of texts in columns, with a title above and notes below.
 
@@ -51,8 +51,8 @@ class Table:
         What the rows tell: objects with all their numbers.
     numbers : sequence of sequences
         What ``csv()`` writes: the names of its columns, then its rows.
-    file : str
-        What the CSV is called in a study's folder.
+    name, file : str
+        What programs call it, and its CSV in a study's folder.
     """
 
     header: Sequence[str]
@@ -62,13 +62,14 @@ class Table:
     folds: Sequence[int] = ()
     lines: Sequence[Any] = ()
     numbers: Sequence[Sequence[Any]] = ()
+    name: str = ""
     file: str = ""
 
     def csv(self) -> str:
         """Return the numbers as CSV."""
         return as_csv(self.numbers[0], self.numbers[1:])
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         blocks = [self._block(range(*ends)) for ends in pairwise((1, *self.folds, len(self.header)))]
         notes = "\n".join(line for note in self.notes for line in textwrap.wrap(note, NOTE_WIDTH))
         return "\n\n".join(part for part in (self.title, *blocks, notes) if part)

@@ -28,6 +28,7 @@ from primkit.study import (
     JOURNAL,
     METHODS,
     PUBLISHED,
+    Estimate,
     Experiment,
     Line,
     Row,
@@ -499,17 +500,16 @@ def test_the_interval_agrees_with_scipy():
     from scipy.stats import bootstrap
 
     values = np.random.default_rng(1).uniform(0, 1, (40, 2)) ** 2
-    low, high = estimate.interval(values)
-    for column, ends in zip(values.T, np.column_stack([low, high]), strict=True):
+    for column, mean in zip(values.T, estimate.means_of(values), strict=True):
         theirs = bootstrap((column,), np.mean, n_resamples=5000, method="percentile", rng=2).confidence_interval
-        assert ends == pytest.approx(tuple(theirs), abs=0.01)
+        assert (mean.low, mean.high) == pytest.approx(tuple(theirs), abs=0.01)
 
 
 def test_the_interval_does_not_depend_on_the_blocks(monkeypatch):
     values = np.random.default_rng(1).uniform(0, 1, (7, 3))
-    whole = estimate.interval(values)
+    whole = [astuple(mean) for mean in estimate.means_of(values)]
     monkeypatch.setattr(estimate, "COUNTS_AT_ONCE", 7 * 300)
-    assert np.allclose(estimate.interval(values), whole, rtol=0, atol=1e-12)
+    assert np.allclose([astuple(mean) for mean in estimate.means_of(values)], whole, rtol=0, atol=1e-12)
 
 
 def test_a_table_fits_a_plain_terminal(rows):
@@ -518,7 +518,7 @@ def test_a_table_fits_a_plain_terminal(rows):
 
 
 def test_a_table_s_html_says_the_same_as_its_text():
-    line = Line("a < b", "A & B", "within 5 mm", 2, HALF, NONE, PERFECT, 7.7, 0.25)
+    line = Line("a < b", "A & B", "within 5 mm", 2, (Estimate(0.5, 0.0, 1.0),) * 4, 7.7, 0.25)
     table = paper_table("<One> & two", (line,), ("a & b",))
     root = ET.fromstring(f"<div>{table._repr_html_()}</div>")
     assert list(root.itertext()) == [

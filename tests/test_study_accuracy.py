@@ -26,7 +26,6 @@ from primkit.study import (
     REMEDIES,
     SWEEPS,
     UNTUNED,
-    AccuracyTable,
     Experiment,
     Row,
     Score,
@@ -42,7 +41,7 @@ from primkit.study import (
     run_study,
     told_points,
 )
-from primkit.study.accuracy.accuracy_table import level_lines
+from primkit.study.accuracy.accuracy_table import accuracy_table, level_lines
 from primkit.study.accuracy.drive_views import View, share_seen, unseen_sides, view_of
 from primkit.study.accuracy.partial import partial_line, partial_table
 from primkit.study.accuracy.sweeps import PLAIN, Condition, Level, experiments, n_runs
@@ -230,9 +229,7 @@ def test_without_common_shapes_there_is_no_error():
 
 
 def table_by_hand():
-    return AccuracyTable(
-        "noise", "By hand", "x [mm]", tuple(level_lines(Level("easy", 3, PLAIN), rows_by_hand())), ("a",)
-    )
+    return accuracy_table("noise", "By hand", level_lines(Level("easy", 3, PLAIN), rows_by_hand()), ("a",))
 
 
 def test_a_table_by_hand():
@@ -360,7 +357,7 @@ def test_a_study_continues_where_it_stopped(gaps, monkeypatch):
 
 def test_the_study_writes_what_it_yields(tmp_path):
     first, second, views = accuracy_study(["gap", "spurious", "partial"], 2, tmp_path, settings=ONLY_ROBUST, jobs=1)
-    assert (first.sweep, second.sweep, views.file) == ("gap", "spurious", "partial.csv")
+    assert (first.name, second.name, views.file) == ("gap", "spurious", "partial.csv")
     assert len(first.notes) == 1 < len(second.notes)
     lines = (tmp_path / "accuracy.csv").read_text(encoding="utf-8").splitlines()
     assert [line.split(",")[0] for line in lines] == ["sweep"] + 4 * ["gap"] + 8 * ["spurious"]
@@ -472,7 +469,7 @@ def test_the_picture_has_a_panel_for_each_sweep_and_tolerance(tmp_path):
     one, table = rows_by_hand(), table_by_hand()
     lines = [line for x in (3, 5) for line in level_lines(Level(f"{x}", x, PLAIN), one)]
     strange = replace(lines[0], method="mine")
-    tables = [replace(table, sweep="spurious", title="Strays, b"), replace(table, lines=(*lines, strange))]
+    tables = [replace(table, name="spurious", title="Strays, b"), replace(table, lines=(*lines, strange))]
     figure = plot_accuracy(tables)
     assert [ax.get_title(loc="left") for ax in figure.axes] == ["By hand", "Strays", "", ""]
     assert [ax.get_ylabel() for ax in figure.axes[::2]] == [f"weighted accuracy\nwithin {mm} mm" for mm in (5, 1)]
@@ -535,10 +532,10 @@ REFUSED = {
         "clearance must leave room for a drive, got 0.3 m on a board of 1 m",
     ),
     "no picture": (
-        lambda: plot_accuracy([replace(table_by_hand(), sweep="gap")]),
+        lambda: plot_accuracy([replace(table_by_hand(), name="gap")]),
         "tables must hold one of the sweeps noise, shapes, scans, spurious; got gap",
     ),
-    "no table": (lambda: plot_accuracy([3]), "each of the tables must be of type AccuracyTable, got int"),
+    "no table": (lambda: plot_accuracy([3]), "each of the tables must be of type Table, got int"),
 }
 
 

@@ -129,7 +129,7 @@ def _say_seen(rows: list[Row], out: Path) -> str:
 def accuracy(arguments: argparse.Namespace) -> None:
     """Change one thing at a time; print how right each method is, and write all numbers and a figure."""
     from ..plots import PANELS, plot_accuracy, save_figure
-    from ..study import METHODS, AccuracyTable, accuracy_study, make_folder
+    from ..study import METHODS, accuracy_study, make_folder
 
     wanted = {name: method for name, method in METHODS.items() if arguments.settings in ("both", name.lower())}
     out, made = make_folder(arguments.out), []
@@ -139,7 +139,7 @@ def accuracy(arguments: argparse.Namespace) -> None:
         ):
             say(f"{table}\n")
             made.append(table)
-    if drawn := [table for table in made if isinstance(table, AccuracyTable) and table.sweep in PANELS]:
+    if drawn := [table for table in made if table.name in PANELS]:
         save_figure(plot_accuracy(drawn), out / "accuracy.png")
     files = [*dict.fromkeys(table.file for table in made), *["accuracy.png"] * bool(drawn)]
     say(f"Wrote  {', '.join(str(out / name) for name in files)}")

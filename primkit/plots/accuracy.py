@@ -20,8 +20,10 @@ from matplotlib.figure import Figure
 
 from ..arguments import check_type
 from ..palette import BLACK, BLUE, GREEN, GREY, INK, ORANGE, PALE, PURPLE, VERMILION
-from ..study.accuracy.accuracy_table import COARSE, FINE, TRUTHS, AccuracyLine, AccuracyTable
+from ..study.accuracy.accuracy_table import COARSE, FINE, TRUTHS, AccuracyLine
+from ..study.accuracy.sweeps import SWEEPS
 from ..study.estimate import Estimate
+from ..table import Table
 from .look import FIGURE_LETTERS
 from .story import Picture, freeze, plain
 
@@ -45,12 +47,12 @@ OTHER_LOOKS: tuple[dict[str, Any], ...] = (
 )
 
 
-def plot_accuracy(tables: Iterable[AccuracyTable]) -> Figure:
+def plot_accuracy(tables: Iterable[Table]) -> Figure:
     """Return one figure: weighted accuracy within 5 mm and 1 mm against what was changed, with 95 % bands.
 
     Parameters
     ----------
-    tables : iterable of AccuracyTable
+    tables : iterable of Table
         Of ``run_accuracy``. Noise, number of shapes, number of scans and spurious returns are drawn, as far as
         they are there.
 
@@ -66,10 +68,10 @@ def plot_accuracy(tables: Iterable[AccuracyTable]) -> Figure:
     """
     tables = list(tables)
     for table in tables:
-        check_type(table, AccuracyTable, "each of the tables must be of type AccuracyTable")
-    drawn = sorted((t for t in tables if t.sweep in PANELS), key=lambda t: PANELS.index(t.sweep))
+        check_type(table, Table, "each of the tables must be of type Table")
+    drawn = sorted((t for t in tables if t.name in PANELS), key=lambda t: PANELS.index(t.name))
     if not drawn:
-        got = ", ".join(t.sweep for t in tables) or "none"
+        got = ", ".join(t.name for t in tables) or "none"
         raise ValueError(f"tables must hold one of the sweeps {', '.join(PANELS)}; got {got}")
     with plain():
         size = (max(LEGEND_ROOM, len(drawn) * PANEL_WIDTH), 2 * PANEL_HEIGHT + ACCURACY_HEAD)
@@ -80,7 +82,7 @@ def plot_accuracy(tables: Iterable[AccuracyTable]) -> Figure:
             for ax, (name, _) in zip(column, TOLERANCES, strict=True):
                 _draw_panel(ax, table, name, methods)
             column[0].set_title(table.title.split(",")[0], size=FIGURE_LETTERS + 1, loc="left")
-            column[-1].set_xlabel(table.axis, size=FIGURE_LETTERS)
+            column[-1].set_xlabel(SWEEPS[table.name].axis, size=FIGURE_LETTERS)
         for ax, (_, tolerance) in zip(axes[:, 0], TOLERANCES, strict=True):
             ax.set_ylabel(f"weighted accuracy\nwithin {1000 * tolerance:g} mm", size=FIGURE_LETTERS)
         _frame(figure, axes[0, 0], drawn, methods)
@@ -88,7 +90,7 @@ def plot_accuracy(tables: Iterable[AccuracyTable]) -> Figure:
     return figure
 
 
-def _draw_panel(ax: Axes, table: AccuracyTable, name: str, methods: Sequence[str]) -> None:
+def _draw_panel(ax: Axes, table: Table, name: str, methods: Sequence[str]) -> None:
     """Draw one sweep at one tolerance: for each method its line, and the band that the interval sweeps."""
     for method in dict.fromkeys(line.method for line in table.lines):
         lines = [line for line in table.lines if line.method == method]
@@ -116,7 +118,7 @@ def _look(method: str, methods: Sequence[str]) -> dict[str, Any]:
     return {"linewidth": 1.6, "markersize": 4.5, "zorder": 3} | look
 
 
-def _frame(figure: Figure, first: Axes, tables: Sequence[AccuracyTable], methods: Sequence[str]) -> None:
+def _frame(figure: Figure, first: Axes, tables: Sequence[Table], methods: Sequence[str]) -> None:
     """Write the finding above, and below it what the lines and bands are."""
     # The empty line below the title is the legend's room.
     look: dict[str, Any] = {"size": FIGURE_LETTERS + 3, "weight": "bold", "color": INK, "linespacing": 1.8}
@@ -134,7 +136,7 @@ def _frame(figure: Figure, first: Axes, tables: Sequence[AccuracyTable], methods
     figure.supxlabel(text, size=FIGURE_LETTERS - 1, x=0.01, ha="left", color=GREY)
 
 
-def _finding(tables: Sequence[AccuracyTable], methods: Sequence[str]) -> str:
+def _finding(tables: Sequence[Table], methods: Sequence[str]) -> str:
     """Say how far each method stays behind the oracle within 5 mm, where it does so the most; the best method first."""
     worst = {name: max(gap for t in tables for gap in _behind(t.lines, name)) for name in methods if name != TRUTHS}
     ranked = sorted((gap, name) for name, gap in worst.items())

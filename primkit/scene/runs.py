@@ -1,10 +1,10 @@
 """Runs: the same board by hand, from the way-points, and explored: scans, time, and how right.
 
 In:  a ``World`` and a ``Lidar``.
-Out: ``Run``, one for each way to move; together a ``Comparison``, which prints as a table.
+Out: ``Run``, one for each way to move; together a ``Table``.
 
 >>> from primkit.shapes import Circle
->>> Comparison(automatic_runs(World([Circle((0.2, 0.1), 0.06)]), Lidar(), rng=0))
+>>> compared(automatic_runs(World([Circle((0.2, 0.1), 0.06)]), Lidar(), rng=0))
             scans  robot time  found  score
 ----------  -----  ----------  -----  -----  ---------------------------------------------------------------
 way-points  76     7.7 s       1      1.00   the robot is set down at each; the ways between are not counted
@@ -13,6 +13,7 @@ explore     15     59.0 s      1      1.00   it drives, stands still, and scans
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..arguments import Floats
@@ -48,21 +49,9 @@ class Run:
         return self.name, f"{self.n_scans:,}", time, str(self.n_found), score, self.note
 
 
-@dataclass(frozen=True, eq=False)
-class Comparison:
-    """Runs on the same board, one below the other; prints as text, shows as HTML in a notebook."""
-
-    runs: tuple[Run, ...]
-
-    def table(self) -> Table:
-        """Return a row for each run."""
-        return Table(("", "scans", "robot time", "found", "score", ""), [run.cells() for run in self.runs])
-
-    def __repr__(self) -> str:
-        return str(self.table())
-
-    def _repr_html_(self) -> str:
-        return self.table()._repr_html_()
+def compared(runs: Sequence[Run]) -> Table:
+    """Return runs on the same board as a table, one below the other."""
+    return Table(("", "scans", "robot time", "found", "score", ""), [run.cells() for run in runs], lines=tuple(runs))
 
 
 def automatic_runs(world: World, lidar: Lidar, rng: int) -> tuple[Run, Run]:

@@ -29,7 +29,7 @@ from ..world import World
 from .finder import beside
 from .keys import wheels_for
 from .page import Message, board_and_look, drawn, page, ring_of, tenths, told_ranges
-from .runs import Comparison, Run, automatic_runs
+from .runs import Run, automatic_runs, compared
 from .state import DriveState
 
 FRESH_SCANS = 5  # scans: outlines that know all scans but so many are as good as new
@@ -245,7 +245,7 @@ class Scene(anywidget.AnyWidget):
             self._automatic = None
             return {"say": f"The robot cannot drive by itself here: {type(error).__name__}: {error}"}
         places = {run.name: tenths(run.way) for run in automatic}
-        table = Comparison((self.state.by_hand(), *automatic)).table()
+        table = compared((self.state.by_hand(), *automatic))
         say = {} if self._compared else {"say": "The robot has driven by itself, too: see the table."}
         self._compared = {"table": [table.header, *table.rows], "places": places}
         return {"automatic": self._compared} | say

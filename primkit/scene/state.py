@@ -39,11 +39,12 @@ from ..grid import Grid
 from ..lidar import Lidar, Scans, scan
 from ..measure import Detection
 from ..robot import advance, start_pose
+from ..table import Table
 from ..world import World
 from .finder import MOST_CELLS, AtOnce, Finder, thinned
 from .keys import STANDING_WHEELS
 from .moved_shape import left_within, with_one_moved
-from .runs import Comparison, Run, automatic_runs
+from .runs import Run, automatic_runs, compared
 
 NEWS_SHARE = 0.01  # when this share of the cells has come or gone since the last look, it is time for another
 KEY_STRIDE = 1 << 31  # cells: farther apart than any two on a board
@@ -238,10 +239,10 @@ class DriveState:
         explained = self.seen_map.covered([one.shape for one in self.found], EXPLAINED)
         return self.seen_map.hiding_places(explained)
 
-    def compare(self) -> Comparison:
+    def compare(self) -> Table:
         """Return this drive beside the way-points and ``explore`` on the same board, which takes some seconds."""
         self.finish()
-        return Comparison((self.by_hand(), *automatic_runs(self.world, self.lidar, self.seed)))
+        return compared((self.by_hand(), *automatic_runs(self.world, self.lidar, self.seed)))
 
     def by_hand(self) -> Run:
         """Return what came of this drive so far."""

@@ -19,7 +19,7 @@ Source: the paper's section 3.3, "Results".
 
 from ..driving.scripted import drives_on, scripted_route
 from ..driving.wander import wander
-from .accuracy.accuracy_table import AccuracyLine, AccuracyTable, accuracy_as_csv, run_accuracy
+from .accuracy.accuracy_table import AccuracyLine, accuracy_as_csv, run_accuracy
 from .accuracy.partial import PartialLine, run_partial
 from .accuracy.sweeps import REMEDIES, SWEEPS, UNTUNED
 from .accuracy.whole import accuracy_study
@@ -32,13 +32,13 @@ from .oracle import ORACLE, Oracle, oracle_fit, shares_seen, told_points
 from .paper_table import Line
 from .published import PUBLISHED, rows_as_csv, tables, write_tables
 from .row import Row, Score
-from .seen_table import SeenLine, seen_table
+from .seen_table import seen_table
 
 __all__ = ["run_study", "on_cluster", "METHODS", "maps_in", "Experiment", "run", "Run", "perform", "Row", "Score"]
 __all__ += ["tables", "Line", "PUBLISHED", "rows_as_csv", "write_tables"]
 __all__ += ["Estimate", "mean_of", "share_of", "JOURNAL", "make_folder", "n_rows"]
 __all__ += ["ORACLE", "Oracle", "told_points", "oracle_fit", "shares_seen"]
-__all__ += ["seen_table", "SeenLine"]
-__all__ += ["accuracy_study", "run_accuracy", "AccuracyTable", "AccuracyLine", "accuracy_as_csv"]
+__all__ += ["seen_table"]
+__all__ += ["accuracy_study", "run_accuracy", "AccuracyLine", "accuracy_as_csv"]
 __all__ += ["run_partial", "PartialLine", "SWEEPS", "REMEDIES", "UNTUNED"]
 __all__ += ["wander", "scripted_route", "drives_on"]

@@ -61,13 +61,26 @@ def in_columns(estimates: Iterable[Estimate | None]) -> list[float | None]:
     return [n for e in estimates for n in ((None,) * 3 if e is None else (e.value, e.low, e.high))]
 
 
+def means_of(values: ArrayLike) -> tuple[Estimate, ...]:
+    """Return the mean of each column, shape (N, Q): a row for each map; the interval is the bootstrap over rows.
+
+    >>> print(*means_of([[0.0, 1.0], [1.0, 1.0]] * 8))
+    0.500 (0.250-0.750) 1.000 (1.000-1.000)
+    """
+    rows = np.asarray(values, dtype=float)
+    if len(rows) == 1:
+        return tuple(map(Estimate, rows[0].tolist()))
+    ends = np.percentile(resampled_means(rows), (2.5, 97.5), axis=0)
+    return tuple(Estimate(*three) for three in np.column_stack([rows.mean(axis=0), *ends]).tolist())
+
+
 def mean_of(values: ArrayLike) -> Estimate:
-    """Return the mean of one number for each map; the interval is the percentile bootstrap over maps.
+    """Return the mean of one number for each map, as ``means_of``.
 
     >>> print(mean_of([1.0, 0.0] * 8), mean_of([0.3]), sep=", ")
     0.500 (0.250-0.750), 0.300
     """
-    return ratio_of(values, np.ones(len(np.asarray(values))))
+    return means_of(np.reshape(values, (-1, 1)))[0]
 
 
 def share_of(share: float, n: int) -> Estimate:
@@ -128,24 +141,6 @@ def pooled_share(right: ArrayLike, total: ArrayLike) -> Estimate | None:
     if share in (0.0, 1.0):
         return share_of(share, int((totals > 0).sum()))
     return ratio_of(rights, totals)
-
-
-def interval(values: Floats) -> tuple[Floats, Floats]:
-    """Return the ends of the 95 % interval of each column's mean: percentile bootstrap over rows.
-
-    Parameters
-    ----------
-    values : array, shape (N, Q)
-        One row for each map.
-
-    Examples
-    --------
-    >>> low, high = interval(np.array([[0.0, 1.0], [1.0, 1.0]] * 8))
-    >>> low.tolist(), high.tolist()
-    ([0.25, 1.0], [0.75, 1.0])
-    """
-    low, high = np.percentile(resampled_means(values), (2.5, 97.5), axis=0)
-    return low, high
 
 
 def resampled_means(values: Floats) -> Floats:

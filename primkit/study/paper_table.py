@@ -3,8 +3,7 @@
 In:  lines, each the means of one method on one group of maps.
 Out: a ``Table``: ``print`` it, end a notebook's cell with it, or write its ``csv()``.
 
->>> perfect = Score(1.0, 1.0, 1.0, 1.0)
->>> line = Line("2 shapes", "ROBUST", "within 5 mm", 1, perfect, robot_time=7.7, computing_time=0.1)
+>>> line = Line("2 shapes", "ROBUST", "within 5 mm", 1, (Estimate(1.0),) * 4, robot_time=7.7, computing_time=0.1)
 >>> print(paper_table("Ours", [line]))
 Ours
 <BLANKLINE>
@@ -17,11 +16,11 @@ Ours
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass, fields
+from dataclasses import dataclass, fields
 from itertools import groupby
 
 from ..table import Table
-from .estimate import columns_of
+from .estimate import Estimate, columns_of, in_columns
 from .row import Score
 
 PAPER_HEADER = ("", "total", "shape", "centre", "dimensions", "time [s]")
@@ -39,10 +38,8 @@ class Line:
         Whose figures these are, and how they are scored.
     n : int
         Number of maps.
-    mean : Score
-        Means over the maps.
-    low, high : Score, optional
-        Ends of the 95 % interval of each mean; None for a single map and for published figures.
+    means : tuple of Estimate
+        Over the maps, in the order of ``Score``; without intervals for a single map and for published figures.
     robot_time, computing_time : float, optional
         Means in seconds, apart where they are known apart.
     time : float, optional
@@ -53,25 +50,18 @@ class Line:
     method: str
     scoring: str
     n: int
-    mean: Score
-    low: Score | None = None
-    high: Score | None = None
+    means: tuple[Estimate, ...]
     robot_time: float | None = None
     computing_time: float | None = None
     time: float | None = None
 
     def cells(self) -> tuple[str, ...]:
         """Return the line as texts, one for each column."""
-        total = f"{self.mean.weighted:.3f}"
-        if self.low is not None and self.high is not None:
-            total += f" ({self.low.weighted:.3f}-{self.high.weighted:.3f})"
-        parts = (f"{part:.3f}" for part in (self.mean.shape, self.mean.center, self.mean.dimension))
-        return (f"{self.method} {self.scoring}".strip(), total, *parts, self._time())
-
-    def _time(self) -> str:
-        if self.robot_time is None or self.computing_time is None:
-            return "-" if self.time is None else f"{self.time:.2f}"
-        return f"{self.robot_time:.1f} + {self.computing_time:.2f}"
+        total, *parts = self.means
+        time = "-" if self.time is None else f"{self.time:.2f}"
+        if self.robot_time is not None and self.computing_time is not None:
+            time = f"{self.robot_time:.1f} + {self.computing_time:.2f}"
+        return (f"{self.method} {self.scoring}".strip(), str(total), *(f"{part.value:.3f}" for part in parts), time)
 
 
 def paper_table(title: str, lines: Sequence[Line], notes: Sequence[str] = ()) -> Table:
@@ -86,20 +76,17 @@ def paper_table(title: str, lines: Sequence[Line], notes: Sequence[str] = ()) ->
     names = columns_of(part.name for part in fields(Score))
     header = ("maps", "n", "method", "scoring", *names, "robot_time_s", "computing_time_s", "time_s")
     file = f"{title.split('.')[0].lower().replace(' ', '-')}.csv"
-    numbers = [header, *map(_numbers, lines)]
+    numbers: list[Sequence[object]] = [header]
+    for line in lines:
+        times = (line.robot_time, line.computing_time, line.time)
+        numbers.append((line.maps, line.n, line.method, line.scoring, *in_columns(line.means), *times))
     return Table(PAPER_HEADER, rows, title, tuple(notes), lines=tuple(lines), numbers=numbers, file=file)
-
-
-def _numbers(line: Line) -> tuple[object, ...]:
-    ends = [(None,) * 4 if end is None else astuple(end) for end in (line.low, line.high)]
-    scores = [number for triple in zip(astuple(line.mean), *ends, strict=True) for number in triple]
-    return (line.maps, line.n, line.method, line.scoring, *scores, line.robot_time, line.computing_time, line.time)
 
 
 def _maps(lines: Sequence[Line]) -> str:
     """Say how many maps a group's lines are about: one number where they agree.
 
-    >>> one = Score(1.0, 1.0, 1.0, 1.0)
+    >>> one = (Estimate(1.0),) * 4
     >>> _maps([Line("2 shapes", "published", "", 10, one), Line("2 shapes", "ROBUST", "", 7, one)])
     '7 maps (published: 10)'
     """

@@ -21,7 +21,7 @@ import numpy as np
 from ..formats import StrPath, write_atomically
 from ..shapes import PRIMITIVES
 from ..table import Table, as_csv
-from .estimate import interval
+from .estimate import Estimate, means_of
 from .paper_table import Line, paper_table
 from .row import Movement, Row, Score
 
@@ -144,7 +144,10 @@ def _table(title: str, rows: Sequence[Row], groups: Mapping[str, Sequence[Row]])
 
 def _lines(maps: str, rows: Sequence[Row]) -> list[Line]:
     figures = PUBLISHED[rows[0].movement].get(maps)
-    lines = [] if figures is None else [Line(maps, "published", "", figures.n, figures.score, time=figures.time)]
+    lines = []
+    if figures is not None:
+        means = tuple(map(Estimate, astuple(figures.score)))
+        lines.append(Line(maps, "published", "", figures.n, means, time=figures.time))
     for method in dict.fromkeys(row.settings for row in rows):
         lines += _means(maps, method, [row for row in rows if row.settings == method])
     return lines
@@ -152,17 +155,12 @@ def _lines(maps: str, rows: Sequence[Row]) -> list[Line]:
 
 def _means(maps: str, method: str, rows: Sequence[Row]) -> list[Line]:
     """Return a method's means under the published protocol and under the fair one."""
-    values = np.array([[*astuple(row.paper), *astuple(row.fair)] for row in rows])
-    ends = interval(values) if len(rows) > 1 else None
+    means = means_of([[*astuple(row.paper), *astuple(row.fair)] for row in rows])
     robot = float(np.mean([row.robot_time for row in rows]))
     computing = float(np.mean([row.computing_time for row in rows]))
-
-    def line(scoring: str, part: slice) -> Line:
-        low, high = (None, None) if ends is None else (Score(*end[part].tolist()) for end in ends)
-        mean = Score(*values.mean(axis=0)[part].tolist())
-        return Line(maps, method, scoring, len(rows), mean, low, high, robot, computing, robot + computing)
-
-    return [line("as published", slice(4)), line(_within(rows[0]), slice(4, 8))]
+    times = (robot, computing, robot + computing)
+    ways = (("as published", means[:4]), (_within(rows[0]), means[4:]))
+    return [Line(maps, method, scoring, len(rows), own, *times) for scoring, own in ways]
 
 
 def _notes(title: str, rows: Sequence[Row], lines: Sequence[Line]) -> tuple[str, ...]:
@@ -182,10 +180,10 @@ def _notes(title: str, rows: Sequence[Row], lines: Sequence[Line]) -> tuple[str,
         "time: robot (scans x period) + computing; the published time is both together.",
         f"Right number of shapes: {'; '.join(counts)}.",
     ]
-    several = [line for line in lines if line.low is not None]
+    several = [line for line in lines if line.means[0].low is not None]
     if several:
         notes.append("In brackets: 95 % interval of the mean over the maps (bootstrap).")
-    if any(line.mean.weighted == 1 for line in several):
+    if any(line.means[0].value == 1 for line in several):
         notes.append("Where all n maps score 1, up to about 3/n of all such maps may still score less (rule of three).")
     return tuple(notes)
 

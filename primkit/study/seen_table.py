@@ -12,68 +12,30 @@ Tables 3 and 4 count shapes that a drive left out as wrong; here each shape stan
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import astuple
 from itertools import groupby
 
 import numpy as np
 
 from ..table import Table
 from .estimate import Estimate, ratio_of
-from .row import Row, Score
+from .paper_table import Line
+from .row import Row
 
 ENOUGH_SEEN = 0.6  # share of an outline
 SEEN_HEADER = ("", "total", "shape", "centre", "dimensions")
 SEEN_COLUMNS = ("map", "method", "kind", "found_as", "seen", "weighted", "shape", "center", "dimension")
 
 
-@dataclass(frozen=True)
-class SeenLine:
-    """The means of one method over shapes that were seen alike.
+def seen_table(rows: Iterable[Row]) -> Table:
+    """Return how right the shapes are that a drive saw at least 60 % of, and how right the others.
 
-    Parameters
-    ----------
-    group : str
-        How much was seen of them.
-    method : str
-        Whose figures these are.
-    n_shapes, n_all, n_maps : int
-        How many shapes these are, of how many, and on how many maps.
-    weighted : Estimate
-        The mean of the weighted accuracy, with its interval over the maps.
-    mean : Score
-        The means of all scores.
-    """
-
-    group: str
-    method: str
-    n_shapes: int
-    n_all: int
-    n_maps: int
-    weighted: Estimate
-    mean: Score
-
-    def heading(self) -> str:
-        """Return what these shapes have in common, and how many there are."""
-        maps = f"{self.n_maps} map{'s' * (self.n_maps != 1)}"
-        return f"{self.group}: {self.n_shapes} of {self.n_all} shapes, on {maps}"
-
-    def cells(self) -> tuple[str, ...]:
-        """Return the line as texts, one for each column."""
-        parts = (f"{part:.3f}" for part in (self.mean.shape, self.mean.center, self.mean.dimension))
-        return (self.method, str(self.weighted), *parts)
-
-
-def seen_table(rows: Iterable[Row], enough: float = ENOUGH_SEEN) -> Table:
-    """Return how right the shapes are that a drive saw enough of, and how right the others.
-
-    Its lines are ``SeenLine``; its CSV has one line for each shape and method, shares and scores from 0 to 1.
+    Its lines are ``Line``; its CSV has one line for each shape and method, shares and scores from 0 to 1.
 
     Parameters
     ----------
     rows : iterable of Row
         Of ``run_study``; only those with manual movement count.
-    enough : float
-        Share of the outline.
 
     Examples
     --------
@@ -81,14 +43,12 @@ def seen_table(rows: Iterable[Row], enough: float = ENOUGH_SEEN) -> Table:
     ()
     """
     rows = [row for row in rows if row.movement == "manual"]
-    lines = []
-    for group, wanted in ((f"seen on {100 * enough:g} % or more", True), ("seen on less", False)):
-        for method in dict.fromkeys(row.settings for row in rows):
-            line = _line(group, [row for row in rows if row.settings == method], enough, wanted)
-            lines += [] if line is None else [line]
+    by_method = [[row for row in rows if row.settings == name] for name in dict.fromkeys(row.settings for row in rows)]
+    groups = ((f"seen on {100 * ENOUGH_SEEN:g} % or more", True), ("seen on less", False))
+    lines = [line for group, enough in groups for own in by_method if (line := _line(group, own, enough))]
     cells: list[tuple[str, ...]] = []
-    for heading, alike in groupby(lines, key=SeenLine.heading):
-        cells += [(heading,), *(line.cells() for line in alike)]
+    for heading, alike in groupby(lines, key=lambda line: line.maps):
+        cells += [(heading,), *(line.cells()[:-1] for line in alike)]  # without the time
     shapes = [
         (row.map, row.settings, kind, found, seen, *astuple(score))
         for row in rows
@@ -99,28 +59,27 @@ def seen_table(rows: Iterable[Row], enough: float = ENOUGH_SEEN) -> Table:
     return Table(SEEN_HEADER, cells, title, _notes(rows, lines), lines=tuple(lines), numbers=numbers, file="seen.csv")
 
 
-def _line(group: str, rows: Sequence[Row], enough: float, wanted: bool) -> SeenLine | None:
+def _line(group: str, rows: Sequence[Row], enough: bool) -> Line | None:
     """Return one method's means over the shapes that were seen enough, or over the others; None without any."""
     chosen = [
-        [score for score, seen in zip(row.scores_by_shape(), row.seen, strict=True) if (seen >= enough) == wanted]
+        [score for score, seen in zip(row.scores_by_shape(), row.seen, strict=True) if (seen >= ENOUGH_SEEN) == enough]
         for row in rows
     ]
     sums = np.array([[len(scores), sum(score.weighted for score in scores)] for scores in chosen if scores])
     if len(sums) == 0:
         return None
-    means = np.mean([astuple(score) for scores in chosen for score in scores], axis=0)
-    return SeenLine(
-        group=group,
-        method=f"{rows[0].settings} within {1000 * rows[0].tolerance:g} mm",
-        n_shapes=int(sums[:, 0].sum()),
-        n_all=sum(row.n_shapes for row in rows),
-        n_maps=len(sums),
-        weighted=ratio_of(sums[:, 1], sums[:, 0]),
-        mean=Score(*means.tolist()),
+    _, *parts = np.mean([astuple(score) for scores in chosen for score in scores], axis=0).tolist()
+    n_shapes, n_all, n_maps = int(sums[:, 0].sum()), sum(row.n_shapes for row in rows), len(sums)
+    return Line(
+        maps=f"{group}: {n_shapes} of {n_all} shapes, on {n_maps} map{'s' * (n_maps != 1)}",
+        method=rows[0].settings,
+        scoring=f"within {1000 * rows[0].tolerance:g} mm",
+        n=n_maps,
+        means=(ratio_of(sums[:, 1], sums[:, 0]), *map(Estimate, parts)),
     )
 
 
-def _notes(rows: Sequence[Row], lines: Sequence[SeenLine]) -> tuple[str, ...]:
+def _notes(rows: Sequence[Row], lines: Sequence[Line]) -> tuple[str, ...]:
     if not rows:
         return ()
     false = {row.settings: 0 for row in rows}
@@ -132,8 +91,8 @@ def _notes(rows: Sequence[Row], lines: Sequence[SeenLine]) -> tuple[str, ...]:
         "was found where there is nothing belongs to no shape and counts in Tables 3 and 4 alone: "
         f"{', '.join(f'{method} {n}' for method, n in false.items())}.",
     ]
-    if any(line.weighted.low is not None for line in lines):
+    if any(line.means[0].low is not None for line in lines):
         notes.append("In brackets: 95 % interval of the mean over the maps (bootstrap).")
-    if any(line.weighted.value == 1 and line.n_maps > 1 for line in lines):
+    if any(line.means[0].value == 1 and line.n > 1 for line in lines):
         notes.append("Where all shapes on n maps score 1, up to about 3/n of all such maps may still score less.")
     return tuple(notes)

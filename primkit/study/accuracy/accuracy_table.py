@@ -1,7 +1,7 @@
 """Accuracy table: how right the methods are, level by level of a sweep; the oracle beside them.
 
 In:  the name of a sweep, a number of maps, a seed.
-Out: an ``AccuracyTable``: for each level and method the weighted accuracy, the count and the errors.
+Out: a ``Table``: for each level and method the weighted accuracy, the count and the errors.
 
 >>> from primkit.pipeline import ROBUST
 >>> table = run_accuracy("gap", 2, settings={"ROBUST": ROBUST}, jobs=1)
@@ -13,10 +13,10 @@ Not here: what a method could do at best (``oracle.py``), and what is changed (`
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import groupby
-from typing import ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -90,42 +90,6 @@ class AccuracyLine:
         return (*cells, "-" if self.time is None else f"{self.time:.3f}")
 
 
-@dataclass(frozen=True)
-class AccuracyTable:
-    """The lines of one sweep; prints as text, shows as HTML in a notebook.
-
-    Parameters
-    ----------
-    sweep, title, axis : str
-        Name, title, and label of the axis.
-    lines : tuple of AccuracyLine
-        Level by level.
-    notes : tuple of str
-        What a reader must know, one thought each.
-    """
-
-    sweep: str
-    title: str
-    axis: str
-    lines: tuple[AccuracyLine, ...]
-    notes: tuple[str, ...] = ()
-    file: ClassVar[str] = "accuracy.csv"  # holds all sweeps
-
-    def table(self) -> Table:
-        """Return the lines as texts, level by level."""
-        rows: list[tuple[str, ...]] = []
-        for _, lines in groupby(self.lines, key=lambda line: line.level):
-            level = list(lines)
-            rows += [(_heading(level[0]),), *(line.cells() for line in level)]
-        return Table(ACCURACY_HEADER, rows, self.title, self.notes, folds=(4,))
-
-    def __str__(self) -> str:
-        return str(self.table())
-
-    def _repr_html_(self) -> str:
-        return self.table()._repr_html_()
-
-
 def run_accuracy(
     sweep: str = "noise",
     n_maps: int = 100,
@@ -135,7 +99,7 @@ def run_accuracy(
     folder: StrPath | None = None,
     jobs: int | None = -1,
     progress: bool = True,
-) -> AccuracyTable:
+) -> Table:
     """Change one thing, and say how right each method is and how right the oracle.
 
     Parameters
@@ -153,8 +117,8 @@ def run_accuracy(
 
     Returns
     -------
-    AccuracyTable
-        Level by level; at each the methods, and the oracle last.
+    Table
+        Its lines are ``AccuracyLine``, level by level; at each the methods, and the oracle last.
 
     Raises
     ------
@@ -181,7 +145,30 @@ def run_accuracy(
     ends = np.cumsum(sizes)
     parts = [rows[end - size : end] for size, end in zip(sizes, ends, strict=True)]
     lines = [line for level, part in zip(chosen.levels, parts, strict=True) for line in level_lines(level, part)]
-    return AccuracyTable(sweep, chosen.title, chosen.axis, tuple(lines), _notes(chosen.note, lines, seed))
+    return accuracy_table(sweep, chosen.title, lines, _notes(chosen.note, lines, seed))
+
+
+def accuracy_table(name: str, title: str, lines: Sequence[AccuracyLine], notes: Sequence[str] = ()) -> Table:
+    """Return the lines of the sweep with this name as a table.
+
+    Its CSV holds scores from 0 to 1, errors in millimetres, times in seconds.
+    """
+    rows: list[tuple[str, ...]] = []
+    for _, group in groupby(lines, key=lambda line: line.level):
+        level = list(group)
+        rows += [(_heading(level[0]),), *(line.cells() for line in level)]
+    counts = ("level", "x", "method", "n_maps", "n_runs", "n_shapes")
+    estimates = ("fine", "coarse", "count", "center_ratio", "dimension_ratio")
+    columns = columns_of(("within_1_mm", "within_5_mm", "right_count", *estimates[3:]))
+    numbers: list[Sequence[Any]] = [
+        ("sweep", *counts, *columns, "center_rms_mm", "dimension_rms_mm", "computing_time_s")
+    ]
+    for line in lines:
+        shares = in_columns(getattr(line, estimate) for estimate in estimates)
+        rms = (1000 * line.center_rms, 1000 * line.dimension_rms)
+        numbers.append((name, *(getattr(line, count) for count in counts), *shares, *rms, line.time))
+    said = Table(ACCURACY_HEADER, rows, title, tuple(notes), folds=(4,))
+    return replace(said, lines=tuple(lines), numbers=numbers, name=name, file="accuracy.csv")
 
 
 def level_lines(level: Level, rows: Sequence[Row]) -> list[AccuracyLine]:
@@ -264,16 +251,6 @@ def _notes(note: str, lines: Sequence[AccuracyLine], seed: int) -> tuple[str, ..
     )
 
 
-def accuracy_as_csv(tables: Iterable[AccuracyTable]) -> str:
-    """Return the lines of several sweeps as CSV: scores from 0 to 1, errors in millimetres, times in seconds."""
-    estimates = ("fine", "coarse", "count", "center_ratio", "dimension_ratio")
-    columns = columns_of(("within_1_mm", "within_5_mm", "right_count", *estimates[3:]))
-    counts = ("level", "x", "method", "n_maps", "n_runs", "n_shapes")
-    rows = []
-    for table in tables:
-        for line in table.lines:
-            numbers = in_columns(getattr(line, name) for name in estimates)
-            rms = (1000 * line.center_rms, 1000 * line.dimension_rms)
-            rows.append((table.sweep, *(getattr(line, name) for name in counts), *numbers, *rms, line.time))
-    header = ("sweep", *counts, *columns)
-    return as_csv((*header, "center_rms_mm", "dimension_rms_mm", "computing_time_s"), rows)
+def accuracy_as_csv(tables: Sequence[Table]) -> str:
+    """Return the numbers of one or more sweeps as one CSV."""
+    return as_csv(tables[0].numbers[0], [row for table in tables for row in table.numbers[1:]])

@@ -17,7 +17,7 @@ from ...formats import StrPath, write_atomically
 from ...pipeline import Settings
 from ...table import Table
 from ..many import METHODS
-from .accuracy_table import AccuracyTable, accuracy_as_csv, run_accuracy
+from .accuracy_table import accuracy_as_csv, run_accuracy
 from .partial import run_partial
 from .sweeps import SWEEPS
 
@@ -33,7 +33,7 @@ def accuracy_study(
     settings: Mapping[str, Settings] = METHODS,
     seed: int = 0,
     jobs: int | None = -1,
-) -> Iterator[AccuracyTable | Table]:
+) -> Iterator[Table]:
     """Yield the table of each sweep as it is done; the files grow with it. What all tables share, the last one notes.
 
     Parameters
@@ -57,7 +57,7 @@ def accuracy_study(
         if name not in STUDIES:
             raise ValueError(f"each of the sweeps must be one of {', '.join(STUDIES)}, got {name!r}")
     last = next((name for name in reversed(names) if name != PARTIAL), None)
-    made: list[AccuracyTable] = []
+    made: list[Table] = []
     for name in names:
         if name == PARTIAL:
             views = run_partial(n_maps, seed=seed, jobs=jobs)
