@@ -118,9 +118,9 @@ FAILURES = {
         'grouping must be "link" or "kmeans", got \'magic\'',
     ),
     "negative noise": (lambda: pk.Settings(noise_std=-1), "noise_std must be a finite number >= 0, got -1"),
-    "a grid": (
-        lambda: pk.find_shapes(pk.Grid()),
-        "points must be an (N, 2) array, got a Grid; did you mean its points()?",
+    "scans": (
+        lambda: pk.find_shapes(pk.scan(pk.World([]), [(0, 0, 0)], pk.Lidar())),
+        "points must be an (N, 2) array, got a Scans; did you mean its points()?",
     ),
     "settings by name": (
         lambda: pk.find_shapes([(0, 0)], settings="paper"),
