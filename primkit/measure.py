@@ -13,7 +13,7 @@ Out: ``Detection``: the shape, its points, how closely they lie to it, and how c
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,9 +24,67 @@ from .robust.choice import Choice
 from .robust.deviations import Certainty
 from .robust.scatter import LEAST_SPREAD
 from .seen import seen_shares
-from .shapes import Kind, Shape
+from .shapes import Circle, Kind, Polygon, Shape
 from .show import in_mm
 from .table import count
+
+CELL = 0.001  # m: side of a cell of the grid, when nothing else is said
+ORIGIN_STEP = 1024  # cells: a board around the origin is worked on where it is
+ON_CENTER = 1e-6  # cells: what is as near to a multiple of half a cell lies there, and the rest is rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """Where and how large points are while they are worked on: all lengths of the method follow the cell.
+
+    The unit is a thousand cells, so that on the usual grid it is a metre; the origin is near the points.
+
+    Parameters
+    ----------
+    origin : array, shape (2,)
+        Metres.
+    unit : float
+        Metres.
+
+    Examples
+    --------
+    A board that is ten times as large, on cells ten times as large, is the same board:
+
+    >>> points = np.array([(1.005, 2.015), (-0.165, 0.005)])
+    >>> Frame.of(points, 0.01).local(points).round(9).tolist()
+    [[0.1005, 0.2015], [-0.0165, 0.0005]]
+    """
+
+    origin: Floats
+    unit: float
+
+    @classmethod
+    def of(cls, points: Floats, resolution: float) -> Frame:
+        """Return the frame for points, shape (N, 2), metres, on cells of this side, metres."""
+        step = ORIGIN_STEP * resolution
+        middle = points.mean(axis=0) if len(points) else np.zeros(2)
+        return cls(np.round(middle / step) * step, resolution / CELL)
+
+    def local(self, points: Floats) -> Floats:
+        """Return points, shape (N, 2), metres, in the frame; cells' centres are the same on every scale, to the bit."""
+        if self.unit == 1 and not self.origin.any():
+            return points
+        cells = (points - self.origin) / (CELL * self.unit)
+        halves = np.round(2 * cells) / 2
+        return np.where(np.abs(cells - halves) <= ON_CENTER, halves, cells) * CELL
+
+    def metres(self, local: Floats) -> Floats:
+        """Return points of the frame, shape (N, 2), in metres."""
+        return local * self.unit + self.origin
+
+    def world(self, found: Detection) -> Detection:
+        """Return what was found in the frame, in metres."""
+        shape, points = found.shape, self.metres(found.points)
+        if isinstance(shape, Circle):
+            shape = Circle(self.metres(shape.center), shape.radius * self.unit)
+        else:
+            shape = Polygon(self.metres(shape.vertices))
+        return replace(found, shape=shape, points=points, rms=found.rms * self.unit, unit=self.unit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +109,8 @@ class Detection:
         What tells how sure the shape's numbers are; None from ``PAPER``, which does not ask.
     choice : Choice, optional
         How the shape was chosen; None from ``PAPER``.
+    unit : float
+        The length, metres, that ``sure`` and ``choice`` have for theirs: a thousand cells.
     """
 
     shape: Shape
@@ -60,6 +120,7 @@ class Detection:
     seen: tuple[float, ...] = ()
     sure: Certainty | Choice | None = field(default=None, repr=False)
     choice: Choice | None = field(default=None, repr=False)
+    unit: float = field(default=1.0, repr=False)
 
     def __repr__(self) -> str:
         centre, dimensions = in_mm(self.shape, self.measured)
@@ -70,10 +131,9 @@ class Detection:
     def center_std(self) -> tuple[float, ...]:
         """Standard deviations of the centroid's x and y, metres; infinite when a side was never seen.
 
-        Like the next, it supposes points on cells of 1 mm, is worked out when it is asked for, and is empty from
-        ``PAPER``, which does not ask.
+        Like the next, it is worked out when it is asked for, and is empty from ``PAPER``, which does not ask.
         """
-        return self._certainty.center_std
+        return tuple(self.unit * std for std in self._certainty.center_std)
 
     @property
     def dimension_std(self) -> tuple[float, ...]:
@@ -82,7 +142,7 @@ class Detection:
         Infinite for one that was not measured, because a side that it hangs on was never seen, or that is not even
         known to a centimetre.
         """
-        return self._certainty.dimension_std
+        return tuple(self.unit * std for std in self._certainty.dimension_std)
 
     @property
     def _certainty(self) -> Certainty:
@@ -112,7 +172,11 @@ class Detection:
 
 
 def measure_shape(
-    points: ArrayLike, spread: float, *, rng: int | np.random.Generator | None = None
+    points: ArrayLike,
+    spread: float,
+    *,
+    resolution: float = CELL,
+    rng: int | np.random.Generator | None = None,
 ) -> Detection | None:
     """Return the shape that explains the points of one cluster best.
 
@@ -122,6 +186,8 @@ def measure_shape(
         Metres; a few may belong to nothing.
     spread : float
         Standard deviation of the points from the outline, metres; see ``spread_of``.
+    resolution : float
+        Side of the cells that the points lie on, metres.
     rng : int or numpy.random.Generator, optional
         Seed or generator for the RANSAC stages.
 
@@ -133,7 +199,7 @@ def measure_shape(
     Raises
     ------
     ValueError
-        If points are not finite (N, 2), or the spread is negative.
+        If points are not finite (N, 2), the spread is negative, or the resolution not above zero.
 
     Examples
     --------
@@ -142,8 +208,11 @@ def measure_shape(
     >>> measure_shape([(x / 100, 0) for x in range(20)], spread=0.001, rng=0) is None
     True
     """
-    points, spread = as_points(points), max(LEAST_SPREAD, as_positive(spread, "spread", zero=True))
-    return as_detection(Choice(points, candidates(points, spread, rng=rng), spread))
+    points, spread = as_points(points), as_positive(spread, "spread", zero=True)
+    frame = Frame.of(points, as_positive(resolution, "resolution"))
+    local, spread = frame.local(points), max(LEAST_SPREAD, spread / frame.unit)
+    found = as_detection(Choice(local, candidates(local, spread, rng=rng), spread))
+    return None if found is None else frame.world(found)
 
 
 def as_detection(choice: Choice) -> Detection | None:

@@ -1,6 +1,6 @@
 """Pipeline: the whole story, from points to shapes, on one screen.
 
-In:  the grid's points, shape (N, 2), metres.
+In:  a grid, or points, shape (N, 2), metres.
 Out: ``Found``, a list of ``Detection``: each with its shape, its points, and how sure it is.
 
 >>> from primkit.shapes import Circle
@@ -26,8 +26,9 @@ from numpy.typing import ArrayLike
 
 from .arguments import Floats, as_count, as_points, as_positive, as_rng, as_share, check_type
 from .found import Found
+from .grid import Grid
 from .lines import LINE, find_lines
-from .measure import Detection, as_detection, detection
+from .measure import CELL, Detection, Frame, as_detection, detection
 from .paper import measure_as_published
 from .robust.regroup import Group, explained, grown, regrouped
 from .robust.scatter import LEAST_SPREAD, SIGMAS, spread_across, spread_from_median, spread_of
@@ -62,8 +63,8 @@ class Settings:
     noise_std : float, optional
         Standard deviation of the sensor's ranges in metres; found from the points when not given.
     line_threshold : float
-        A point lies on a line when it is at most this far from it, metres. Only for ``"published"``, like
-        all below: 5 cells of the grid.
+        A point lies on a line when it is at most this far from it, metres on a grid of 1 mm: five cells, however
+        large they are. Only for ``"published"``, like all below.
     line_trials : int
         Samples for each line.
     left_over : float
@@ -113,9 +114,10 @@ PAPER = Settings(grouping="kmeans", method="published")
 
 
 def find_shapes(
-    points: ArrayLike,
+    points: Grid | ArrayLike,
     n_shapes: int | None = None,
     *,
+    resolution: float | None = None,
     settings: Settings = ROBUST,
     steps: Steps | None = None,
     memory: Memory | None = None,
@@ -125,11 +127,14 @@ def find_shapes(
 
     Parameters
     ----------
-    points : array_like, shape (N, 2)
-        Metres, in any order; ``Grid.points()``.
+    points : Grid, or array_like, shape (N, 2)
+        Metres, in any order.
     n_shapes : int, optional
         How many shapes there are; found when it is not given. ``PAPER`` then takes K-Means' best silhouette.
         Linking finds the number by itself: with it, and the published measuring, this is not used.
+    resolution : float, optional
+        Side of the cells that points lie on, metres; 1 mm when it is not given. A grid knows its own. All lengths of
+        the method follow it: a board ten times as large, on cells ten times as large, has the same shapes on it.
     settings : Settings
         ``ROBUST`` or ``PAPER``, or your own.
     steps : Steps, optional
@@ -150,8 +155,8 @@ def find_shapes(
     Raises
     ------
     ValueError
-        If points are not finite (N, 2), or more shapes are asked for than there are different points; or if a
-        step of your own returns what it should not.
+        If points are not finite (N, 2), or more shapes are asked for than there are different points; if a resolution
+        is given that is not above zero, or with a grid; or if a step of your own returns what it should not.
 
     Examples
     --------
@@ -161,23 +166,35 @@ def find_shapes(
     check_type(settings, Settings, "settings must be ROBUST, PAPER or Settings of your own")
     steps = Steps() if steps is None else steps
     check_type(steps, Steps, "steps must be Steps, such as Steps(fit_circle=mine)")
-    points = as_points(points)
+    points, resolution = _points_on_cells(points, resolution)
     if n_shapes is not None:
         check_count(n_shapes, points)
     if len(points) == 0 or n_shapes == 0:
         return Found()
     points = points[np.lexsort((points[:, 1], points[:, 0]))]  # the order of seeing leaves no trace
+    frame = Frame.of(points, resolution)
     group_rng, measure_rng = as_rng(rng).spawn(2)
     labels = steps.labels(points, n_shapes)
+    local = frame.local(points)
     if labels is None:
         asked = n_shapes if settings.grouping == "kmeans" else None
-        labels = segment(points, asked, method=settings.grouping, rng=group_rng)
-    together = [points[labels == label] for label in range(labels.max() + 1)]
+        labels = segment(local, asked, method=settings.grouping, rng=group_rng)
+    together = [local[labels == label] for label in range(labels.max() + 1)]
+    steps = steps.within(frame)
     if settings.method == "published":
         found = _as_published(together, settings, steps, measure_rng)
     else:
         found = _jointly(together, n_shapes, settings, steps, {} if memory is None else memory, measure_rng)
-    return Found(sorted(found, key=lambda d: tuple(d.shape.centroid)))
+    return Found(sorted(map(frame.world, found), key=lambda d: tuple(d.shape.centroid)))
+
+
+def _points_on_cells(points: Grid | ArrayLike, resolution: float | None) -> tuple[Floats, float]:
+    """Return points, shape (N, 2), and the side of their cells, both metres."""
+    if isinstance(points, Grid) or (hasattr(points, "resolution") and hasattr(points, "points")):  # a MovingGrid
+        if resolution is not None:
+            raise ValueError(f"resolution must not be given with a grid, which knows its own, got {resolution!r}")
+        return points.points(), points.resolution
+    return as_points(points), CELL if resolution is None else as_positive(resolution, "resolution")
 
 
 def _jointly(

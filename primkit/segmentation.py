@@ -27,8 +27,9 @@ from .arguments import ROUNDING, Floats, Labels, as_count, as_points, as_positiv
 
 Grouping = Literal["kmeans", "link"]
 
-# Neighbours on an outline lie a few millimetres apart, 2 cm where only distant poses saw it; shapes lie farther.
-LINK = 0.022
+# Neighbours on an outline lie a few cells apart, 20 where only distant poses saw it; shapes lie farther.
+LINK_CELLS = 22
+LINK = 0.022  # m: the same on cells of 1 mm
 LINK_NEIGHBOURS = 4  # a point joins others when so many, itself included, lie within a link: strays do not
 LEAST_GROUP = 8  # a smaller group is a handful of strays
 STARTS = 10  # K-Means depends on where it starts: the best of ten
@@ -43,6 +44,7 @@ def segment(
     n_shapes: int | None = None,
     *,
     method: Grouping = "kmeans",
+    resolution: float = 0.001,
     rng: int | np.random.Generator | None = None,
 ) -> Labels:
     """Return a label for each point: which group it belongs to.
@@ -56,6 +58,8 @@ def segment(
         needs no number and takes none.
     method : {"kmeans", "link"}
         How to group.
+    resolution : float
+        Side of the cells that the points lie on, metres: linking reaches over 22 of them.
     rng : int or numpy.random.Generator, optional
         Seed or generator for K-Means' starts.
 
@@ -80,7 +84,7 @@ def segment(
     if len(points) == 0:
         return np.empty(0, dtype=np.int64)
     if method == "link":
-        return link(points)
+        return link(points, LINK_CELLS * as_positive(resolution, "resolution"))
     rng = as_rng(rng)
     return kmeans(points, count_by_silhouette(points, rng=rng) if n_shapes is None else n_shapes, rng=rng)
 
@@ -143,6 +147,7 @@ def count_by_silhouette(
     from sklearn.metrics import silhouette_score
 
     points, rng = as_points(points), as_rng(rng)
+    points = points - points.min(axis=0, initial=np.inf)  # digits are not lost far from the origin
     different = len(np.unique(points, axis=0))
     best, best_score = min(1, different), 0.5
     for k in range(2, min(as_count(most, "most"), different - 1) + 1):

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from .arguments import Floats, Labels, short
 from .lines import Line
-from .measure import Detection, detection
+from .measure import Detection, Frame, detection
 from .shapes import Circle, Polygon
 
 
@@ -74,6 +74,19 @@ class Steps:
         for name, step in vars(self).items():
             if step is not None and not callable(step):
                 raise ValueError(f"{name} must be a function, got {short(step)}")
+
+    def within(self, frame: Frame) -> Steps:
+        """Return the own fits as functions of the frame's points; they themselves are given metres."""
+
+        def line(points: Floats) -> Line | None:
+            fit = self.line(frame.metres(points))
+            return fit and Line(fit.angle, float(fit.offset - fit.normal @ frame.origin) / frame.unit)
+
+        def circle(points: Floats) -> Circle | None:
+            fit = self.circle(frame.metres(points))
+            return fit and Circle((fit.center - frame.origin) / frame.unit, fit.radius / frame.unit)
+
+        return replace(self, fit_line=self.fit_line and line, fit_circle=self.fit_circle and circle)
 
     def labels(self, points: Floats, n_shapes: int | None) -> Labels | None:
         """Return what the own ``segment`` says, numbered from 0 without gaps and -1 for strays; None without one."""

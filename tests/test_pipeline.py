@@ -118,9 +118,9 @@ FAILURES = {
         'grouping must be "link" or "kmeans", got \'magic\'',
     ),
     "negative noise": (lambda: pk.Settings(noise_std=-1), "noise_std must be a finite number >= 0, got -1"),
-    "a grid": (
-        lambda: pk.find_shapes(pk.Grid()),
-        "points must be an (N, 2) array, got a Grid; did you mean its points()?",
+    "scans": (
+        lambda: pk.find_shapes(pk.scan(pk.World([]), [(0, 0, 0)], pk.Lidar())),
+        "points must be an (N, 2) array, got a Scans; did you mean its points()?",
     ),
     "settings by name": (
         lambda: pk.find_shapes([(0, 0)], settings="paper"),
@@ -159,7 +159,7 @@ FAILURES = {
         lambda: pk.segment([(0, 0)] * 9 + [(1, 1)], 2, method="link"),
         'n_shapes must be None with method "link", which finds the number itself, got 2',
     ),
-    "an unknown name": (lambda: pk.find_shape, "module 'primkit' has no attribute 'find_shape'"),
+    "an unknown name": (lambda: pk.find_shape, "No primkit attribute find_shape"),
 }
 
 
@@ -296,3 +296,11 @@ def test_a_given_number_is_kept_to_without_a_second_opinion_too(n):
     world = pk.random_world(3, kinds=["circle"] * 3, rng=2)
     settings = replace(pk.ROBUST, second_opinion=False)
     assert len(pk.find_shapes(points_of(world), n, settings=settings, rng=0)) <= n
+
+
+@pytest.mark.parametrize("grid", [pk.Grid(0.01), pk.MovingGrid(0.01)], ids=["Grid", "MovingGrid"])
+def test_a_grid_tells_the_side_of_its_cells(grid):
+    world = pk.World([pk.Circle((0.3, -0.2), 0.6)], size=10)
+    grid.add(pk.scan(world, pk.teleport_poses(world), pk.Lidar(range_min=0.5, range_max=3), rng=0))
+    (found,) = pk.find_shapes(grid, rng=0)
+    assert found.shape.radius == pytest.approx(0.6, abs=0.005)

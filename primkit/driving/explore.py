@@ -185,7 +185,7 @@ class _Tour:
         """Ask what the points so far are; False when there are no new ones."""
         if len(self.grid) == self.found_from:
             return False
-        self.found = find_shapes(self.grid.points(), memory=self.memory, rng=self.seed)
+        self.found = find_shapes(self.grid, memory=self.memory, rng=self.seed)
         self.found_from = len(self.grid)
         shapes = [one.shape for one in self.found]
         self.inside, self.explained = self.board.covered(shapes, 0.0), self.board.covered(shapes, EXPLAINED)

@@ -64,7 +64,7 @@ def _scan_from_waypoints(world: World, lidar: Lidar, rng: int) -> Run:
     poses = teleport_poses(world)
     grid = Grid()
     grid.add(scan(world, poses, lidar, rng=rng))
-    found = find_shapes(grid.points(), rng=rng)
+    found = find_shapes(grid, rng=rng)
     note = "the robot is set down at each; the ways between are not counted"
     time, score = len(waypoints(world.size)) * lidar.period, evaluate(found, world).weighted_accuracy
     return Run("way-points", len(poses), time, len(found), score, note, poses[:, :2])
