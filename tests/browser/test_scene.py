@@ -241,25 +241,25 @@ UNGUARD = """(root) => {
 }"""
 
 
-@pytest.fixture
-def another_lab(browser, address, folder):
+@pytest.fixture(scope="module")
+def another_lab(browser, address):
     """A browser of its own: Lab reloads a second page in the same one. What is harmed here is seen by nobody else."""
-    (folder / "notebooks" / "unguarded.ipynb").write_text(notebook())
     context = browser.new_context(base_url=address, viewport={"width": WIDE, "height": 1000})
     page = context.new_page()
     enter(page)
-    with opened(page, "unguarded", 0) as lesson:
-        yield lesson.page
+    yield page
     context.close()
 
 
 @pytest.mark.parametrize("keys", ["dd", "aabb", "xx"])
-def test_without_its_guards_the_same_keys_harm_a_cell(another_lab, keys):
+def test_without_its_guards_the_same_keys_harm_a_cell(another_lab, folder, keys):
     """The trap is there, and the test above sees it."""
-    seat = Seat(another_lab)
-    seat.root.locator("canvas").click()
-    seat.root.evaluate(UNGUARD)
-    assert harm(another_lab, keys)
+    (folder / "notebooks" / f"unguarded-{keys}.ipynb").write_text(notebook())
+    with opened(another_lab, f"unguarded-{keys}", 0):
+        seat = Seat(another_lab)
+        seat.root.locator("canvas").click()
+        seat.root.evaluate(UNGUARD)
+        assert harm(another_lab, keys)
 
 
 def test_buttons_drive_with_the_mouse(seat):
@@ -328,17 +328,6 @@ def in_voila(context, folder, name, sources):
     return page
 
 
-def test_it_opens_in_voila(context, folder, screenshots):
-    page = in_voila(context, folder, "scene_page", CELLS)
-    seat = Seat(page)
-    seat.root.locator("canvas").click()
-    seat.hold(["w"], 4)
-    assert seat.pose[0] > 0.02
-    if screenshots:
-        page.screenshot(path=screenshots / "scene_voila.png", full_page=True)
-    page.close()
-
-
 @pytest.fixture(scope="module")
 def touched(phone, folder):
     """The scene on a screen that is touched."""
@@ -381,6 +370,15 @@ def test_a_finger_drives_while_it_stays(touched, finger, end):
     finger(end)
     touched.stands()
     assert np.hypot(*(touched.pose - before)[:2]) > 0.04
+
+
+def test_in_voila_keys_drive_too(touched, screenshots):
+    before = touched.pose
+    touched.root.locator("canvas").click()
+    touched.hold(["w"], 4)
+    assert (touched.pose - before)[0] > 0.02
+    if screenshots:
+        touched.page.screenshot(path=screenshots / "scene_voila.png", full_page=True)
 
 
 def test_a_thing_is_moved_while_noise_keeps_the_kernel_busy(context, folder, screenshots):
