@@ -76,7 +76,7 @@ def _own_and_next(points: Floats, labels: Labels, itself: int = 1) -> tuple[Floa
     names, inverse = np.unique(labels, return_inverse=True)
     apart = _distances(points, points)
     sums = np.column_stack([apart[:, labels == name].sum(axis=1) for name in names])
-    sizes, rows = np.bincount(inverse), np.arange(len(points))
+    sizes, rows = np.bincount(inverse.astype(np.intp)), np.arange(len(points))
     own = sums[rows, inverse] / np.maximum(sizes[inverse] - itself, 1)
     others = sums / sizes
     others[rows, inverse] = np.inf
@@ -135,7 +135,7 @@ def _silhouette_cases(rng: np.random.Generator) -> Iterator[Args]:
         sizes = rng.integers(2, 8, k)
         if n % 4 == 0:
             sizes[rng.integers(k)] = 1
-        labels = np.repeat(np.arange(k), sizes)
+        labels = np.repeat(np.arange(k, dtype=np.intp), sizes.astype(np.intp))
         points = rng.uniform(-0.4, 0.4, (k, 2))[labels] + rng.normal(0.0, rng.choice([0.02, 0.2]), (len(labels), 2))
         order = rng.permutation(len(labels))
         yield points[order], labels[order]
@@ -211,7 +211,7 @@ def _empty(case: Case) -> Bools:
 
 def _nan_for_a_lone_point(cases: list[Case]) -> bool:
     """Tell whether the silhouette is not a number where a point is alone, and right elsewhere."""
-    alone = [1 in np.bincount(case.args[1]) for case in cases]
+    alone = [1 in np.bincount(case.args[1].astype(np.intp)) for case in cases]
     return all(
         isinstance(case.got, float) and np.isnan(case.got) if lone else case.off is None
         for case, lone in zip(cases, alone, strict=True)
@@ -254,7 +254,7 @@ def _to_centers(points: Floats, labels: Labels) -> float:
     rows = np.arange(len(points))
     a = apart[rows, inverse].copy()
     apart[rows, inverse] = np.inf
-    return _mean_of(a, apart.min(axis=1), np.bincount(inverse)[inverse] == 1)
+    return _mean_of(a, apart.min(axis=1), np.bincount(inverse.astype(np.intp))[inverse] == 1)
 
 
 assign_points = Check(
