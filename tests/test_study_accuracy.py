@@ -11,7 +11,7 @@ import pytest
 from scipy.stats import binomtest
 
 from primkit.__main__ import main
-from primkit.driving.wander import CLEARANCE, WAY_MARGIN, PERIOD_WAY, TURN_CHOICES, wander
+from primkit.driving.wander import CLEARANCE, PERIOD_WAY, TURN_CHOICES, WAY_MARGIN, wander
 from primkit.evaluation import evaluate
 from primkit.grid import Grid
 from primkit.lidar import Lidar, scan
