@@ -13,7 +13,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .words import Parser, path, say, whole
+from ..table import count
+from .words import Parser, meanwhile, path, say, whole
 
 if TYPE_CHECKING:
     from ..study import Row
@@ -57,14 +58,18 @@ def accuracy_options(parser: Parser) -> None:
     """Add the options of ``primkit accuracy``."""
     text = "any of suite, noise, shapes, scans, spurious, gap, remedies, partial"
     parser.option("--sweeps", "NAME", str, None, text, nargs="+", shown="all")
-    parser.option("--maps", "N", partial(whole, least=1), 100, "number of maps for each line, and of drives")
+    parser.option(
+        "--maps", "N", partial(whole, least=1, most=100_000), 100, "number of maps for each line, and of drives"
+    )
     _many_options(parser, "maps and noise", "accuracy.csv, accuracy.png and partial.csv")
 
 
 def _many_options(parser: Parser, seeded: str, files: str) -> None:
     parser.choice("--settings", ("both", "robust", "paper"), "the method: ours, as published, or both")
     parser.option("--seed", "S", whole, 0, f"seed of {seeded}, a whole number")
-    parser.option("--jobs", "N", partial(whole, least=1), None, "number of processes", shown="one on each core")
+    parser.option(
+        "--jobs", "N", partial(whole, least=1, most=1000), None, "number of processes", shown="one on each core"
+    )
     parser.option("--scheduler", "ADDRESS", str, None, "dask cluster that does the work", shown="this machine")
     parser.option("--out", "DIR", path, Path("out"), f"folder for the journal, and {files}")
 
@@ -97,6 +102,7 @@ def study(arguments: argparse.Namespace) -> None:
     journal = out / JOURNAL
     if arguments.fresh:
         journal.unlink(missing_ok=True)
+    meanwhile(f"{count(len(maps), 'map')} with {' and '.join(wanted)}; finished ones are kept in {journal}")
     before, rows = n_rows(journal), []
     with _workers(arguments) as jobs:
         for movement in ("automatic", "manual"):
@@ -129,10 +135,11 @@ def _say_seen(rows: list[Row], out: Path) -> str:
 def accuracy(arguments: argparse.Namespace) -> None:
     """Change one thing at a time; print how right each method is, and write all numbers and a figure."""
     from ..plots import PANELS, plot_accuracy, save_figure
-    from ..study import METHODS, accuracy_study, make_folder
+    from ..study import JOURNAL, METHODS, accuracy_study, make_folder
 
     wanted = {name: method for name, method in METHODS.items() if arguments.settings in ("both", name.lower())}
     out, made = make_folder(arguments.out), []
+    meanwhile(f"{count(arguments.maps, 'map')} for each line; finished ones are kept in {out / JOURNAL}")
     with _workers(arguments) as jobs:
         for table in accuracy_study(
             arguments.sweeps, arguments.maps, out, settings=wanted, seed=arguments.seed, jobs=jobs
