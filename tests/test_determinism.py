@@ -59,6 +59,8 @@ results = {
     "run_ransac": pk.run_ransac(points, LINE, 0.005, rng=5),
     "find_lines": pk.find_lines(points, 0.005, rng=6),
     "find_circle": pk.find_circle(points, 0.005, rng=7),
+    "draw_samples": pk.draw_samples(40, 3, 20, np.random.default_rng(8)),
+    "measure_as_published": pk.measure_as_published(points[pk.link(points) == 0], 4, rng=8),
     "measure_shape": pk.measure_shape(points[pk.link(points) == 0], 0.002, rng=8),
     "explore": [tour.poses, tour.scans, tour.found, tour.wheels],
     "scripted_route": [route.start, route.wheels],

@@ -72,8 +72,8 @@ def test_walls_stand_on_the_edge_of_the_board():
     ]
     assert World().walls.shape == (0, 2, 2)
     assert (World().walled, World(walls=True).walled, World(walls=np.True_).walled) == (False, True, True)
-    assert repr(World(walls=True)) == "World(shapes=(), size=1.0, walls=True)"
-    assert repr(World()) == "World(shapes=(), size=1.0)"
+    assert repr(World(walls=True)) == "World: 1 m x 1 m with walls, no shapes"
+    assert repr(World()) == "World: 1 m x 1 m, no shapes"
     assert pickle.loads(pickle.dumps(World([BOX], 2, walls=True))) == World([BOX], 2, walls=True)
     assert random_world(2, walls=True, rng=5) == World(random_world(2, rng=5).shapes, walls=True)
 
