@@ -97,6 +97,28 @@ def mended(course):
     return [(file, old) for file, old, _ in told]
 
 
+# What the first edition's notebooks and hidden tests import: on students' machines, and in teachers' courses.
+FIRST_EDITION = """\
+from primkit.checks import Check, Fault
+from primkit.checks.answer import Case
+from primkit.checks.judges import Judge, array, groups, number, points_in_any_order, shown
+from primkit.evaluation import Report
+from primkit.grading import Mark, OutOfTime, Part, Task, personal_truth
+from primkit.grading.table import Row
+from primkit.grading.truth import DEMONSTRATION
+from primkit.personal import personal_scans
+from primkit.plots.look import BLACK, BLUE, GREY, ORANGE, VERMILION
+from primkit.shapes import KINDS
+"""
+
+
+def test_what_the_first_edition_imports_is_there_once_it_is_mended():
+    text = FIRST_EDITION
+    for old, new in MOVED.items():
+        text = text.replace(old, new)
+    exec(text, {})
+
+
 def test_a_course_from_before_the_move_says_how_to_mend_it(tmp_path):
     """That it works afterwards, the tests below show."""
     course = small_course(tmp_path)

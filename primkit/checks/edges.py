@@ -182,7 +182,10 @@ line_through = Check(
             "Upright lines come out wrong: is something divided by a difference in x?",
             when=off_only_where(lambda case: case.args[0][0] == case.args[1][0]),
         ),
-        Fault("That is the bearing of the line itself: its normal is a quarter turn away.", like=_along),
+        Fault(
+            "That is the bearing of the line itself: its normal is a quarter turn away.",
+            like=lambda p, q: through(p, q) and _along(p, q),
+        ),
         Fault(
             "The offset has a sign: it belongs to the normal that you return.",
             like=_through(lambda a, d: (a, abs(d))),

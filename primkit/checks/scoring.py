@@ -169,10 +169,10 @@ def score(found: Sequence[Shape], true: Sequence[Shape], pairs: Pairs, tolerance
 
     ``tolerance`` in metres; ``true`` holds one shape at least.
     """
-    return _score(found, true, pairs, tolerance)
+    return _score_with(found, true, pairs, tolerance)
 
 
-def _score(
+def _score_with(
     found: Sequence[Shape],
     true: Sequence[Shape],
     pairs: Pairs,
@@ -267,35 +267,38 @@ weighted_accuracy = Check(
     (
         Fault(
             "Values that are far too small count as right: is there an absolute value?",
-            like=partial(_score, absolute=False),
+            like=partial(_score_with, absolute=False),
         ),
-        Fault("False alarms cost nothing: each is one more wrong shape.", like=partial(_score, alarms=False)),
+        Fault("False alarms cost nothing: each is one more wrong shape.", like=partial(_score_with, alarms=False)),
         Fault(
             "Missed shapes cost nothing: divide by what is in the truth, not by what was matched.",
-            like=partial(_score, misses=False),
+            like=partial(_score_with, misses=False),
         ),
         Fault(
             "Neither misses nor false alarms cost anything: finding less must not score more.",
-            like=partial(_score, misses=False, alarms=False),
+            like=partial(_score_with, misses=False, alarms=False),
         ),
         Fault(
             "The three parts do not weigh the same: 0.4, 0.3 and 0.3.",
-            like=partial(_score, weights=(1 / 3, 1 / 3, 1 / 3)),
+            like=partial(_score_with, weights=(1 / 3, 1 / 3, 1 / 3)),
         ),
         Fault(
             "Sides are compared in the order of the lists: the first corner of one may be another's second.",
-            like=partial(_score, shift=False),
+            like=partial(_score_with, shift=False),
         ),
-        Fault("x and y of a centre count separately.", like=partial(_score, together=True)),
-        Fault("F counts false alarms alone: found shapes that stand in no pair.", like=partial(_score, all_found=True)),
+        Fault("x and y of a centre count separately.", like=partial(_score_with, together=True)),
+        Fault(
+            "F counts false alarms alone: found shapes that stand in no pair.",
+            like=partial(_score_with, all_found=True),
+        ),
         Fault(
             "Sides and radii are compared across kinds: dimensions count only where the kind is right.",
-            like=partial(_score, sides_of_any=True),
+            like=partial(_score_with, sides_of_any=True),
         ),
         Fault(
             "Centres are compared only where the kind is right: they count for every pair.",
-            like=partial(_score, kind_first=True),
+            like=partial(_score_with, kind_first=True),
         ),
-        Fault("That is in per cent: a score goes from 0 to 1.", like=partial(_score, weights=(40.0, 30.0, 30.0))),
+        Fault("That is in per cent: a score goes from 0 to 1.", like=partial(_score_with, weights=(40.0, 30.0, 30.0))),
     ),
 )

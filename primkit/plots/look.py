@@ -30,7 +30,9 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.typing import ColorType
 
 from ..arguments import Floats, check_type, short
-from ..palette import GREY, INK, KIND_COLORS, KIND_MARKERS
+
+# Notebooks that were released before take their colours from here.
+from ..palette import BLACK, BLUE, GREY, INK, KIND_COLORS, KIND_MARKERS, ORANGE, VERMILION  # noqa: F401
 from ..robot import BODY
 from ..shapes import Circle, Shape
 
