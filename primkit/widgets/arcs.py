@@ -15,7 +15,7 @@ from functools import cache
 import numpy as np
 
 from ..arguments import Floats
-from ..circles import fit_circle
+from ..circles import Method, fit_circle
 from ..palette import BLACK, BLUE, GREY, INK, ORANGE, PALE, PURPLE, VERMILION
 from ..shapes import Circle
 from .drawing import Frame, picture, square_frame
@@ -115,11 +115,8 @@ def fitted(points: Floats, name: str) -> Circle | None:
     if name == "mean":
         center = points.mean(axis=0)
         return Circle(center, float(np.hypot(*(points - center).T).mean()))
-    if name == "Kasa":
-        return fit_circle(points, "kasa")
-    if name == "Pratt":
-        return fit_circle(points, "pratt")
-    return fit_circle(points, "taubin" if name == "Taubin" else "geometric")
+    methods: dict[str, Method] = {"Kasa": "kasa", "Pratt": "pratt", "Taubin": "taubin", "geometric": "geometric"}
+    return fit_circle(points, methods[name])
 
 
 def _millimetres(circle: Circle | None) -> str:

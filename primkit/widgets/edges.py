@@ -71,7 +71,8 @@ def draw_edges(trial: int, threshold: float, noise: float, seed: int) -> str:
     near = LINE.residuals(lines, points) <= reach
     counts = np.count_nonzero(near, axis=1)
     best, now = int(np.argmax(counts)), trial - 1
-    frame = _around(RECTANGLE)
+    x, y = RECTANGLE.centroid.tolist()
+    frame = square_frame((x, y + 0.04), 0.42)  # with room for the legend above
     return picture(
         frame,
         _band(frame, Line(*lines[now]), reach, ORANGE),
@@ -156,12 +157,6 @@ def draw_diagram() -> Picture:
         "of t to each side, and p does not.",
     )
     return Picture(svg, "Diagram: a line in normal form, and its band")
-
-
-def _around(polygon: Polygon) -> Frame:
-    """Return a square frame around a polygon, with room for a legend above it."""
-    x, y = polygon.centroid
-    return square_frame((float(x), float(y) + 0.04), 0.42)
 
 
 def _across(frame: Frame, line: Line, color: str, width: float, dash: str = "") -> str:
