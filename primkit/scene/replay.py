@@ -8,7 +8,7 @@ Out: ``Replay``, a widget with a button and a slider; all is sent at once, so th
 >>> world = World([Circle((0.3, 0.0), 0.05)])
 >>> player = replay(Drive(scan(world, [(0, 0, 0), (0.01, 0, 0)]), [(0, 0), (5, 5)]))
 >>> player
-Replay: 2 scans in 0.1 s, 0 shapes found
+Replay: 2 scans in 0.1 s, no shapes found
 >>> player.close()
 
 The shapes are those that would have been found on the way: they are looked for each time that the map has grown by a
@@ -26,6 +26,7 @@ from ..evaluation import evaluate
 from ..formats import Drive
 from ..grid import Grid
 from ..pipeline import Memory, find_shapes
+from ..table import count
 from ..world import World
 from .finder import Look
 from .page import Message, board_and_look, drawn, page, ring_of, tenths, told_ranges
@@ -110,7 +111,7 @@ class Replay(anywidget.AnyWidget):
     def __repr__(self) -> str:
         n, found = len(self.drive), len(self.film.looks[-1].found) if self.film.looks else 0
         seconds = (n - 1) * self.drive.period
-        return f"Replay: {n:,} scan{'s' * (n != 1)} in {seconds:.1f} s, {found} shape{'s' * (found != 1)} found"
+        return f"Replay: {count(n, 'scan')} in {seconds:.1f} s, {count(found, 'shape')} found"
 
     def answer(self, asked: Message) -> None:
         """Send the whole film to a page that says hello."""

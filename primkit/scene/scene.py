@@ -6,7 +6,7 @@ Out: ``Scene``, a widget for JupyterLab and Voila; its ``state`` is a ``DriveSta
 >>> from primkit.shapes import Circle
 >>> scene = drive_scene(World([Circle((0.3, 0.0), 0.05)]))
 >>> scene
-Scene: 0.0 s driven, 1 scan, 0 shapes found
+Scene: 0.0 s driven, 1 scan, no shapes found
 >>> scene.close()
 
 The page (``scene.js``, ``board.js``) has the clock: while a key is held it asks for a step ten times a second, one at a
@@ -25,6 +25,7 @@ import anywidget
 import numpy as np
 
 from ..lidar import Lidar
+from ..table import count
 from ..world import World
 from .finder import beside
 from .keys import wheels_for
@@ -107,9 +108,8 @@ class Scene(anywidget.AnyWidget):
         self.on_msg(lambda _, asked, __: self.answer(asked))
 
     def __repr__(self) -> str:
-        scans, found = self.state.n_scans, len(self.state.found)
-        driven = f"{self.state.time:.1f} s driven, {scans} scan{'s' * (scans != 1)}"
-        return f"Scene: {driven}, {found} shape{'s' * (found != 1)} found"
+        scans, found = count(self.state.n_scans, "scan"), count(len(self.state.found), "shape")
+        return f"Scene: {self.state.time:.1f} s driven, {scans}, {found} found"
 
     def answer(self, asked: Message) -> None:
         """Do what the page asks for, and send it what has changed.
@@ -186,7 +186,7 @@ class Scene(anywidget.AnyWidget):
 
     def _score(self) -> str:
         state = self.state
-        driven = f"{state.time:.1f} s · {state.n_scans:,} scan{'s' * (state.n_scans != 1)}"
+        driven = f"{state.time:.1f} s · {count(state.n_scans, 'scan')}"
         age = state.n_scans - state.n_scans_found
         old = f" · shapes {age} scans old" if age > FRESH_SCANS and state.looks else ""
         return f"{driven} · {len(state.found)} found · score {state.score:.2f}{old}"

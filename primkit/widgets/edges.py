@@ -23,6 +23,7 @@ from ..palette import BLUE, CLUSTER_COLORS, GREY, INK, ORANGE, SKY, VERMILION
 from ..ransac import draw_samples
 from ..robot import teleport_poses
 from ..shapes import Polygon
+from ..table import count
 from ..world import World
 from .drawing import Frame, picture, square_frame
 from .slider import Explorer, Picture, Slider, explore
@@ -89,7 +90,7 @@ def draw_edges(trial: int, threshold: float, noise: float, seed: int) -> str:
                 (f"best so far, trial {best + 1}: {counts[best]} inliers", BLUE, "line"),
             ]
         ),
-        title=f"After {trial} trial{'s' * (trial > 1)}: {counts[best]} of {len(points)} points agree",
+        title=f"After {count(trial, 'trial')}: {counts[best]} of {len(points)} points agree",
         says=f"Trial {trial} draws two points and finds {counts[now]} inliers of {len(points)}; "
         f"the best so far is trial {best + 1} with {counts[best]}.",
     )

@@ -23,7 +23,7 @@ import numpy as np
 from ...arguments import Floats, as_count
 from ...formats import StrPath
 from ...pipeline import Settings
-from ...table import Table, as_csv
+from ...table import Table, as_csv, count
 from ..estimate import Estimate, columns_of, in_columns, mean_of, ratio_of, share_of
 from ..many import METHODS, checked_jobs, perform_all
 from ..oracle import ORACLE, Oracle
@@ -228,9 +228,8 @@ def _ratio(ours: Floats, theirs: Floats) -> Estimate | None:
 
 
 def _heading(line: AccuracyLine) -> str:
-    maps = f"{line.n_maps} map{'s' * (line.n_maps != 1)}"
     repeats = f", {line.n_runs} runs" if line.n_runs != line.n_maps else ""
-    return f"{line.level}, {maps}{repeats}"
+    return f"{line.level}, {count(line.n_maps, 'map')}{repeats}"
 
 
 def _notes(note: str, lines: Sequence[AccuracyLine], seed: int) -> tuple[str, ...]:
