@@ -29,7 +29,7 @@ from ..pipeline import Memory, find_shapes
 from ..table import count
 from ..world import World
 from .finder import Look
-from .page import Message, board_and_look, drawn, page, ring_of, tenths, told_ranges
+from .page import Message, board_and_look, describe, page, ring_of, tell_ranges, tenths
 
 GROWTH = 1.2  # so many times the cells are worth another look
 MOST_RANGE = 32_767  # tenths of a millimetre: ranges go to the page as whole numbers of 16 bits
@@ -123,7 +123,7 @@ class Replay(anywidget.AnyWidget):
         drive, truth = self.drive, () if self.world is None else self.world.shapes
         size = 1.0 if self.world is None else self.world.size
         looks = [
-            {"scan": look.n_scans - 1, "shapes": [drawn(one) for one in look.found], "score": self._score(look)}
+            {"scan": look.n_scans - 1, "shapes": [describe(one) for one in look.found], "score": self._score(look)}
             for look in self.film.looks
         ]
         return board_and_look(size, drive.lidar, Grid().resolution) | {
@@ -143,4 +143,4 @@ class Replay(anywidget.AnyWidget):
 
     def _ranges(self) -> NDArray[np.int16]:
         """Return ranges in tenths of a millimetre, shape (P, B), -1 where nothing was hit."""
-        return np.minimum(told_ranges(self.drive.scans.ranges), MOST_RANGE).astype("<i2")
+        return np.minimum(tell_ranges(self.drive.scans.ranges), MOST_RANGE).astype("<i2")

@@ -29,8 +29,8 @@ from ..table import count
 from ..world import World
 from .finder import beside
 from .keys import wheels_for
-from .page import Message, board_and_look, drawn, page, ring_of, tenths, told_ranges
-from .runs import Run, automatic_runs, compared
+from .page import Message, board_and_look, describe, page, ring_of, tell_ranges, tenths
+from .runs import Run, automatic_runs, compare_runs
 from .state import DriveState
 
 FRESH_SCANS = 5  # scans: outlines that know all scans but so many are as good as new
@@ -178,7 +178,7 @@ class Scene(anywidget.AnyWidget):
             return {"say": f"The look for shapes failed, the drive goes on: {type(error).__name__}: {error}"}
         if self.state.n_scans_found == self._shown_of:
             return {}
-        before, self._shown = self._shown, [drawn(one) for one in self.state.found]
+        before, self._shown = self._shown, [describe(one) for one in self.state.found]
         self._shown_of = self.state.n_scans_found
         if self._shown == before:
             return {"score": self._score()}
@@ -195,13 +195,13 @@ class Scene(anywidget.AnyWidget):
         """Return what every step changes: pose, ranges, time, score."""
         state = self.state
         record = state.trouble or (f"recording {state.record.name}" if state.record else "")
-        pose, ranges = [round(float(value), 5) for value in state.pose], told_ranges(state.scan.ranges[0]).tolist()
+        pose, ranges = [round(float(value), 5) for value in state.pose], tell_ranges(state.scan.ranges[0]).tolist()
         return {"pose": pose, "ranges": ranges, "scans": state.n_scans, "score": self._score(), "record": record}
 
     def _send_all(self, say: str = "") -> None:
         """Send all that there is: to a page that knows nothing, or shall forget what it knows."""
         state = self.state
-        self._shown, self._shown_of = [drawn(one) for one in state.found], state.n_scans_found
+        self._shown, self._shown_of = [describe(one) for one in state.found], state.n_scans_found
         same = board_and_look(state.world.size, state.lidar, state.grid.resolution) | {"moving": state.moving}
         all_ = {"cells": state.grid.cells.tolist(), "shapes": self._shown, "automatic": self._compared}
         self.send(self._now() | same | all_ | self._truth() | {"paused": self.paused, "say": say, "busy": self._busy})
@@ -245,7 +245,7 @@ class Scene(anywidget.AnyWidget):
             self._automatic = None
             return {"say": f"The robot cannot drive by itself here: {type(error).__name__}: {error}"}
         places = {run.name: tenths(run.way) for run in automatic}
-        table = compared((self.state.by_hand(), *automatic))
+        table = compare_runs((self.state.by_hand(), *automatic))
         say = {} if self._compared else {"say": "The robot has driven by itself, too: see the table."}
         self._compared = {"table": [table.header, *table.rows], "places": places}
         return {"automatic": self._compared} | say
