@@ -241,8 +241,8 @@ def _notes(note: str, lines: Sequence[AccuracyLine], seed: int) -> tuple[str, ..
         + (f"; {' and '.join(told)} is told the number." if told else "."),
         "centre, dimens.: root mean square errors of the shapes that the method and the oracle both found as what they "
         "are (centre within 10 cm). x oracle: divided by the oracle's on the same shapes.",
-        "oracle: the least-squares fit that is told which point belongs to which side. It does not know of right "
-        "angles, and has no shape where a side was not seen: a method can be ahead of it.",
+        "oracle: the least-squares fit that is told the kinds, and which point belongs to which side. It has no shape "
+        "where a side was not seen: a method can be ahead of it.",
         "time: median computing time of a map.",
         "In brackets: 95 % interval over the maps (bootstrap; of the count Wilson's). Where all n maps score 1, up to "
         "about 3/n of all such maps may still score less.",
