@@ -12,10 +12,10 @@ from primkit.driving.moving_grid import MovingGrid
 from primkit.measure import Detection
 from primkit.robot import AXLE, FASTEST, WHEEL, clearance
 from primkit.robust.deviations import Certainty
-from primkit.scene.finder import MOST_CELLS, Finder, beside, thinned
+from primkit.scene.finder import MOST_CELLS, Finder, beside, thin_out
 from primkit.scene.keys import KEY_MOTIONS, STANDING_WHEELS, wheels_for
-from primkit.scene.moved_shape import LEAST_MOVED, left_within, with_one_moved
-from primkit.scene.page import drawn
+from primkit.scene.moved_shape import LEAST_MOVED, find_left_within, move_one_shape
+from primkit.scene.page import describe
 from primkit.scene.replay import Film
 from primkit.scene.scene import Scene
 from primkit.scene.state import DriveState
@@ -240,12 +240,12 @@ def test_of_very_many_cells_a_look_takes_a_part_and_the_last_look_all(world, mon
 def test_what_is_looked_at_grows_with_the_map():
     """A cell that is looked at is looked at again, until there are too many; then some drop out, and none comes in."""
     cells = np.stack(np.meshgrid(np.arange(60), np.arange(50)), axis=-1).reshape(-1, 2)
-    all_of_them = thinned(cells, 1000)
+    all_of_them = thin_out(cells, 1000)
     assert 500 < all_of_them.sum() <= 1000
     for n in range(100, 3000, 100):
-        fewer = thinned(cells[:n], 1000)
+        fewer = thin_out(cells[:n], 1000)
         assert not (all_of_them[:n] & ~fewer).any()
-    near = thinned(cells[: len(cells) - 10], 1000)
+    near = thin_out(cells[: len(cells) - 10], 1000)
     np.testing.assert_array_equal(near, all_of_them[:-10])
 
 
@@ -391,11 +391,11 @@ def test_what_lies_within_a_shape_that_was_put_around_it_is_given_up():
     grid.add(pk.scan(pk.World([large]), around))
     points = grid.points()
     ring = points[np.abs(large.signed_distance(points)) < 0.005]
-    within = left_within(grid, [Detection(large, ring, 0.0)])
+    within = find_left_within(grid, [Detection(large, ring, 0.0)])
     assert within.sum() == len(inner)
     assert (large.signed_distance(points[within]) < 0).all()
     half = ring[ring[:, 0] < 0.0]
-    assert not left_within(grid, [Detection(large, half, 0.0)]).any(), "too little of it was seen to be sure"
+    assert not find_left_within(grid, [Detection(large, half, 0.0)]).any(), "too little of it was seen to be sure"
     grid.give_up(within)
     assert len(grid) == len(points) - len(inner)
 
@@ -445,15 +445,15 @@ def test_back_at_the_start_things_stand_where_they_stood(world):
 def test_what_is_moved_keeps_clear_of_all(world):
     rng, pose = np.random.default_rng(0), np.array([0.0, 0.0, 0.0])
     for _ in range(20):
-        after = with_one_moved(world, pose, rng)
+        after = move_one_shape(world, pose, rng)
         old, new = the_moved(world, after)
         assert np.hypot(*(new.centroid - old.centroid)) >= LEAST_MOVED - 1e-9
         assert after.least_gap() >= 0.05
         assert clearance(after, pose[None, :2])[0] > 0
         world = after
-    assert with_one_moved(pk.World(), pose, rng) is None
+    assert move_one_shape(pk.World(), pose, rng) is None
     full = pk.World([pk.Circle((0.25, 0), 0.24), pk.Circle((-0.25, 0), 0.24)])
-    assert with_one_moved(full, np.array([0, 0.4, 0]), rng) is None
+    assert move_one_shape(full, np.array([0, 0.4, 0]), rng) is None
 
 
 @pytest.mark.parametrize(
@@ -682,7 +682,7 @@ def test_an_outline_is_drawn_as_it_was_seen():
     shape = pk.Polygon([(0, 0), (0.2, 0), (0.2, 0.1), (0, 0.1)])
     x, y = np.arange(0, 0.2, 0.001), np.arange(0, 0.1, 0.001)
     points = np.vstack([np.column_stack([x, 0 * x]), np.column_stack([0 * y + 0.2, y])])
-    told = drawn(Detection(shape, points, 0.0, sure=Certainty((), (0.001, float("inf")))))
+    told = describe(Detection(shape, points, 0.0, sure=Certainty((), (0.001, float("inf")))))
     assert told["name"] == "rectangle, 200 x ? mm"
     for seen, stretch in told["stretches"]:
         inner = np.array(stretch[2:-2]).reshape(-1, 2) / 10_000

@@ -117,6 +117,16 @@ def test_the_oracle_leaves_out_what_it_cannot_fit():
     assert oracle_fit(World([TRIANGLE]), parallel, sides) == [None]
 
 
+def test_the_oracle_keeps_a_rectangle_s_right_angles_in_noise():
+    """Sides fitted one by one are off by more than 2 degrees here, and four such sides are no rectangle."""
+    board = World([Polygon([(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (-0.1, 0.05)]).moved((0.02, 0.01), 0.4)])
+    for seed in range(5):
+        lidar = Lidar(noise_std=0.01)
+        fits = oracle_fit(board, *told_points(board, scan(board, teleport_poses(board), lidar, rng=seed), lidar))
+        assert [fit.kind for fit in fits] == ["rectangle"]
+        assert np.allclose(np.abs(fits[0].turns), np.pi / 2, rtol=0, atol=1e-12)
+
+
 def test_the_oracle_takes_the_place_of_settings():
     trial = Experiment("board", BOARD, "oracle", ORACLE, Lidar(noise_std=0.001), seed=3)
     done, row = run(trial), perform(trial)

@@ -25,7 +25,7 @@ from ..study.accuracy.sweeps import SWEEPS
 from ..study.estimate import Estimate
 from ..table import Table
 from .look import FIGURE_LETTERS
-from .story import Picture, freeze, plain
+from .story import ShownFigure, freeze, plain
 
 PANELS = ("noise", "shapes", "scans", "spurious")  # a sweep of two levels needs no picture
 TOLERANCES = (("coarse", COARSE), ("fine", FINE))
@@ -75,7 +75,7 @@ def plot_accuracy(tables: Iterable[Table]) -> Figure:
         raise ValueError(f"tables must hold one of the sweeps {', '.join(PANELS)}; got {got}")
     with plain():
         size = (max(LEGEND_ROOM, len(drawn) * PANEL_WIDTH), 2 * PANEL_HEIGHT + ACCURACY_HEAD)
-        figure = Picture(figsize=size, layout="constrained")
+        figure = ShownFigure(figsize=size, layout="constrained")
         axes = figure.subplots(2, len(drawn), sharey=True, sharex="col", squeeze=False)
         methods = list(dict.fromkeys(line.method for table in drawn for line in table.lines))
         for column, table in zip(axes.T, drawn, strict=True):

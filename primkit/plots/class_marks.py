@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from ..palette import BLUE, GREY, INK, PALE
 from ..table import count
 from .look import FIGURE_LETTERS
-from .story import Picture, freeze, plain
+from .story import ShownFigure, freeze, plain
 
 Part = tuple[str, str, float, tuple[str, int]]
 Row = tuple[str, float | None, tuple[str, int]]  # a heading has no share
@@ -50,7 +50,7 @@ def plot_class(name: str, students: int, parts: Sequence[Part]) -> Figure:
         raise ValueError("parts must hold at least one part of a problem set")
     rows = list(_rows(parts))
     with plain():
-        figure = Picture(figsize=(CLASS_WIDTH, CLASS_HEAD + BAR_HEIGHT * len(rows)), layout="constrained")
+        figure = ShownFigure(figsize=(CLASS_WIDTH, CLASS_HEAD + BAR_HEIGHT * len(rows)), layout="constrained")
         title = textwrap.fill(_words(_finding(name, students, parts)), TITLE_LETTERS)
         figure.suptitle(title, x=0.01, ha="left", size=FIGURE_LETTERS + 2.5, weight="bold")
         _draw_bars(figure.add_subplot(), rows)

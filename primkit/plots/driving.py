@@ -40,7 +40,7 @@ from .look import (
     patch,
     set_title,
 )
-from .story import Picture, freeze, plain
+from .story import ShownFigure, freeze, plain
 
 FRAMES_IN_A_ROW = 3
 FRAME_SIDE = 2.5  # inches
@@ -88,7 +88,9 @@ def plot_drive(world: World, drive: Drive, n_frames: int = 6) -> Figure:
     columns = 2 if n_frames == 4 else min(FRAMES_IN_A_ROW, n_frames)
     rows = -(-n_frames // columns)
     with plain():
-        figure = Picture(figsize=(max(columns * FRAME_SIDE, 4.0), rows * FRAME_SIDE + STRIP_HEAD), layout="constrained")
+        figure = ShownFigure(
+            figsize=(max(columns * FRAME_SIDE, 4.0), rows * FRAME_SIDE + STRIP_HEAD), layout="constrained"
+        )
         grid = figure.subplots(rows, columns, squeeze=False).ravel()
         for number, (ax, before, end) in enumerate(zip(grid, ends, ends[1:], strict=False)):
             _draw_frame(ax, world, drive.poses[:end], points[first < end], first[first < end] >= before)

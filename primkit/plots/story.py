@@ -32,7 +32,7 @@ PICTURE_DPI = 200
 LAYOUT_ROUNDS = 4  # the layout comes nearer to its goal each time
 
 
-class Picture(Figure):
+class ShownFigure(Figure):
     """A figure that a notebook shows, even one that has not used pyplot yet."""
 
     def _repr_png_(self) -> bytes:
@@ -93,7 +93,7 @@ def plot_story(
     check_type(scans, Scans, "scans must be of type Scans")
     check_type(report, Report, "report must be of type Report")
     with plain():
-        figure = Picture(figsize=(6.4, 5.0), layout="constrained")
+        figure = ShownFigure(figsize=(6.4, 5.0), layout="constrained")
         axes = figure.subplot_mosaic("ad;bd;cd", width_ratios=[1, 2.8])
         if len(scans):
             plot_scan(world, scans, int(scans.hits.sum(axis=1).argmax()), axes["a"])

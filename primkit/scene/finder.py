@@ -12,7 +12,7 @@ Out: ``Look``: the shapes of the last look that is done, and how many scans it k
 
 There is one look at a time; another that is asked for meanwhile is not begun, and the next takes the points that are
 newest then. ``beside()`` looks in a thread of its own; ``AtOnce()`` in the caller's, so that the same drive gives the
-same shapes on any computer. ``thinned`` bounds the cells of a look, and so its time and memory.
+same shapes on any computer. ``thin_out`` bounds the cells of a look, and so its time and memory.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class Look:
     n_scans: int
 
 
-def thinned(cells: Ints, most: int = MOST_CELLS) -> Bools:
+def thin_out(cells: Ints, most: int = MOST_CELLS) -> Bools:
     """Tell which cells are looked at when there are too many: a share of them, by a hash of each, shape (N,).
 
     A cell is chosen whatever else there is: while the share stays the same, the chosen cells of a map that grows only
@@ -76,7 +76,7 @@ def thinned(cells: Ints, most: int = MOST_CELLS) -> Bools:
     Examples
     --------
     >>> cells = np.stack(np.meshgrid(np.arange(100), np.arange(100)), axis=-1).reshape(-1, 2)
-    >>> [int(thinned(cells[:n], 4000).sum()) for n in (4000, 10_000)]
+    >>> [int(thin_out(cells[:n], 4000).sum()) for n in (4000, 10_000)]
     [4000, 3269]
     """
     mixed = cells.astype(np.uint64) @ np.array(HASH_FACTORS, dtype=np.uint64)

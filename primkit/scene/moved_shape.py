@@ -5,7 +5,7 @@ Out: another ``World``, in which one shape stands elsewhere; or None where there
 
 >>> from primkit.shapes import Circle
 >>> before = World([Circle((0.2, 0.0), 0.05)])
->>> after = with_one_moved(before, np.zeros(3), np.random.default_rng(0))
+>>> after = move_one_shape(before, np.zeros(3), np.random.default_rng(0))
 >>> way = after.shapes[0].centroid - before.shapes[0].centroid
 >>> bool(LEAST_MOVED <= np.hypot(*way) <= MOST_MOVED)
 True
@@ -34,7 +34,7 @@ WITHIN_DEPTH = 0.012  # m: a cell so deep within a shape is not of its outline
 MOSTLY_SEEN = 0.6  # of an outline: from this share on, it tells what lies within
 
 
-def with_one_moved(world: World, pose: Floats, rng: np.random.Generator) -> World | None:
+def move_one_shape(world: World, pose: Floats, rng: np.random.Generator) -> World | None:
     """Return a board on which one shape stands 8 to 20 cm elsewhere, and turned; None where there is no room.
 
     Parameters
@@ -67,7 +67,7 @@ def _has_room(shape: Shape, rest: list[Shape], size: float, pose: Floats) -> boo
     return float(clearance(World([shape], size=size), pose[None, :2])[0]) > 10 * CLEAR
 
 
-def left_within(grid: MovingGrid, found: Iterable[Detection]) -> Bools:
+def find_left_within(grid: MovingGrid, found: Iterable[Detection]) -> Bools:
     """Tell which cells of a map lie within a shape found later, shape (N,): no beam will ever contradict them.
 
     Only shapes of which ``MOSTLY_SEEN`` was seen count.

@@ -40,12 +40,12 @@ def board_and_look(size: float, lidar: Lidar, cell: float) -> Message:
     return {"board": board, "look": {"colors": PAGE_COLORS, "kinds": KIND_COLORS, "inks": KIND_INKS}}
 
 
-def told_ranges(ranges: Floats) -> Ints:
+def tell_ranges(ranges: Floats) -> Ints:
     """Return ranges in tenths of a millimetre, and -1 where nothing was hit, in the same shape."""
     return np.where(np.isfinite(ranges), np.rint(ranges / TENTH), -1).astype(np.int64)
 
 
-def drawn(one: Detection) -> Message:
+def describe(one: Detection) -> Message:
     """Return how a shape is drawn: its outline in stretches that were seen, or are only supposed, and its name.
 
     Examples
@@ -54,7 +54,7 @@ def drawn(one: Detection) -> Message:
 
     >>> from primkit.robust.deviations import Certainty
     >>> circle = Circle((0, 0), 0.1)
-    >>> told = drawn(Detection(circle, circle.outline(200)[:101], 0.0, sure=Certainty((), (0.001,))))
+    >>> told = describe(Detection(circle, circle.outline(200)[:101], 0.0, sure=Certainty((), (0.001,))))
     >>> told["name"], [seen for seen, _ in told["stretches"]]
     ('circle, radius 100 mm', [True, False, True])
     """

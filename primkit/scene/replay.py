@@ -8,7 +8,7 @@ Out: ``Replay``, a widget with a button and a slider; all is sent at once, so th
 >>> world = World([Circle((0.3, 0.0), 0.05)])
 >>> player = replay(Drive(scan(world, [(0, 0, 0), (0.01, 0, 0)]), [(0, 0), (5, 5)]))
 >>> player
-Replay: 2 scans in 0.1 s, 0 shapes found
+Replay: 2 scans in 0.1 s, no shapes found
 >>> player.close()
 
 The shapes are those that would have been found on the way: they are looked for each time that the map has grown by a
@@ -26,9 +26,10 @@ from ..evaluation import evaluate
 from ..formats import Drive
 from ..grid import Grid
 from ..pipeline import Memory, find_shapes
+from ..table import count
 from ..world import World
 from .finder import Look
-from .page import Message, board_and_look, drawn, page, ring_of, tenths, told_ranges
+from .page import Message, board_and_look, describe, page, ring_of, tell_ranges, tenths
 
 GROWTH = 1.2  # so many times the cells are worth another look
 MOST_RANGE = 32_767  # tenths of a millimetre: ranges go to the page as whole numbers of 16 bits
@@ -110,7 +111,7 @@ class Replay(anywidget.AnyWidget):
     def __repr__(self) -> str:
         n, found = len(self.drive), len(self.film.looks[-1].found) if self.film.looks else 0
         seconds = (n - 1) * self.drive.period
-        return f"Replay: {n:,} scan{'s' * (n != 1)} in {seconds:.1f} s, {found} shape{'s' * (found != 1)} found"
+        return f"Replay: {count(n, 'scan')} in {seconds:.1f} s, {count(found, 'shape')} found"
 
     def answer(self, asked: Message) -> None:
         """Send the whole film to a page that says hello."""
@@ -122,7 +123,7 @@ class Replay(anywidget.AnyWidget):
         drive, truth = self.drive, () if self.world is None else self.world.shapes
         size = 1.0 if self.world is None else self.world.size
         looks = [
-            {"scan": look.n_scans - 1, "shapes": [drawn(one) for one in look.found], "score": self._score(look)}
+            {"scan": look.n_scans - 1, "shapes": [describe(one) for one in look.found], "score": self._score(look)}
             for look in self.film.looks
         ]
         return board_and_look(size, drive.lidar, Grid().resolution) | {
@@ -142,4 +143,4 @@ class Replay(anywidget.AnyWidget):
 
     def _ranges(self) -> NDArray[np.int16]:
         """Return ranges in tenths of a millimetre, shape (P, B), -1 where nothing was hit."""
-        return np.minimum(told_ranges(self.drive.scans.ranges), MOST_RANGE).astype("<i2")
+        return np.minimum(tell_ranges(self.drive.scans.ranges), MOST_RANGE).astype("<i2")

@@ -4,7 +4,7 @@ In:  a ``World`` and a ``Lidar``.
 Out: ``Run``, one for each way to move; together a ``Table``.
 
 >>> from primkit.shapes import Circle
->>> compared(automatic_runs(World([Circle((0.2, 0.1), 0.06)]), Lidar(), rng=0))
+>>> compare_runs(automatic_runs(World([Circle((0.2, 0.1), 0.06)]), Lidar(), rng=0))
             scans  robot time  found  score
 ----------  -----  ----------  -----  -----  ---------------------------------------------------------------
 way-points  76     7.7 s       1      1.00   the robot is set down at each; the ways between are not counted
@@ -49,7 +49,7 @@ class Run:
         return self.name, f"{self.n_scans:,}", time, str(self.n_found), score, self.note
 
 
-def compared(runs: Sequence[Run]) -> Table:
+def compare_runs(runs: Sequence[Run]) -> Table:
     """Return runs on the same board as a table, one below the other."""
     return Table(("", "scans", "robot time", "found", "score", ""), [run.cells() for run in runs], lines=tuple(runs))
 

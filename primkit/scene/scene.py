@@ -6,7 +6,7 @@ Out: ``Scene``, a widget for JupyterLab and Voila; its ``state`` is a ``DriveSta
 >>> from primkit.shapes import Circle
 >>> scene = drive_scene(World([Circle((0.3, 0.0), 0.05)]))
 >>> scene
-Scene: 0.0 s driven, 1 scan, 0 shapes found
+Scene: 0.0 s driven, 1 scan, no shapes found
 >>> scene.close()
 
 The page (``scene.js``, ``board.js``) has the clock: while a key is held it asks for a step ten times a second, one at a
@@ -25,11 +25,12 @@ import anywidget
 import numpy as np
 
 from ..lidar import Lidar
+from ..table import count
 from ..world import World
 from .finder import beside
 from .keys import wheels_for
-from .page import Message, board_and_look, drawn, page, ring_of, tenths, told_ranges
-from .runs import Run, automatic_runs, compared
+from .page import Message, board_and_look, describe, page, ring_of, tell_ranges, tenths
+from .runs import Run, automatic_runs, compare_runs
 from .state import DriveState
 
 FRESH_SCANS = 5  # scans: outlines that know all scans but so many are as good as new
@@ -107,9 +108,8 @@ class Scene(anywidget.AnyWidget):
         self.on_msg(lambda _, asked, __: self.answer(asked))
 
     def __repr__(self) -> str:
-        scans, found = self.state.n_scans, len(self.state.found)
-        driven = f"{self.state.time:.1f} s driven, {scans} scan{'s' * (scans != 1)}"
-        return f"Scene: {driven}, {found} shape{'s' * (found != 1)} found"
+        scans, found = count(self.state.n_scans, "scan"), count(len(self.state.found), "shape")
+        return f"Scene: {self.state.time:.1f} s driven, {scans}, {found} found"
 
     def answer(self, asked: Message) -> None:
         """Do what the page asks for, and send it what has changed.
@@ -178,7 +178,7 @@ class Scene(anywidget.AnyWidget):
             return {"say": f"The look for shapes failed, the drive goes on: {type(error).__name__}: {error}"}
         if self.state.n_scans_found == self._shown_of:
             return {}
-        before, self._shown = self._shown, [drawn(one) for one in self.state.found]
+        before, self._shown = self._shown, [describe(one) for one in self.state.found]
         self._shown_of = self.state.n_scans_found
         if self._shown == before:
             return {"score": self._score()}
@@ -186,7 +186,7 @@ class Scene(anywidget.AnyWidget):
 
     def _score(self) -> str:
         state = self.state
-        driven = f"{state.time:.1f} s · {state.n_scans:,} scan{'s' * (state.n_scans != 1)}"
+        driven = f"{state.time:.1f} s · {count(state.n_scans, 'scan')}"
         age = state.n_scans - state.n_scans_found
         old = f" · shapes {age} scans old" if age > FRESH_SCANS and state.looks else ""
         return f"{driven} · {len(state.found)} found · score {state.score:.2f}{old}"
@@ -195,13 +195,13 @@ class Scene(anywidget.AnyWidget):
         """Return what every step changes: pose, ranges, time, score."""
         state = self.state
         record = state.trouble or (f"recording {state.record.name}" if state.record else "")
-        pose, ranges = [round(float(value), 5) for value in state.pose], told_ranges(state.scan.ranges[0]).tolist()
+        pose, ranges = [round(float(value), 5) for value in state.pose], tell_ranges(state.scan.ranges[0]).tolist()
         return {"pose": pose, "ranges": ranges, "scans": state.n_scans, "score": self._score(), "record": record}
 
     def _send_all(self, say: str = "") -> None:
         """Send all that there is: to a page that knows nothing, or shall forget what it knows."""
         state = self.state
-        self._shown, self._shown_of = [drawn(one) for one in state.found], state.n_scans_found
+        self._shown, self._shown_of = [describe(one) for one in state.found], state.n_scans_found
         same = board_and_look(state.world.size, state.lidar, state.grid.resolution) | {"moving": state.moving}
         all_ = {"cells": state.grid.cells.tolist(), "shapes": self._shown, "automatic": self._compared}
         self.send(self._now() | same | all_ | self._truth() | {"paused": self.paused, "say": say, "busy": self._busy})
@@ -245,7 +245,7 @@ class Scene(anywidget.AnyWidget):
             self._automatic = None
             return {"say": f"The robot cannot drive by itself here: {type(error).__name__}: {error}"}
         places = {run.name: tenths(run.way) for run in automatic}
-        table = compared((self.state.by_hand(), *automatic))
+        table = compare_runs((self.state.by_hand(), *automatic))
         say = {} if self._compared else {"say": "The robot has driven by itself, too: see the table."}
         self._compared = {"table": [table.header, *table.rows], "places": places}
         return {"automatic": self._compared} | say

@@ -41,10 +41,10 @@ from ..measure import Detection
 from ..robot import advance, start_pose
 from ..table import Table
 from ..world import World
-from .finder import MOST_CELLS, AtOnce, Finder, thinned
+from .finder import MOST_CELLS, AtOnce, Finder, thin_out
 from .keys import STANDING_WHEELS
-from .moved_shape import left_within, with_one_moved
-from .runs import Run, automatic_runs, compared
+from .moved_shape import find_left_within, move_one_shape
+from .runs import Run, automatic_runs, compare_runs
 
 NEWS_SHARE = 0.01  # when this share of the cells has come or gone since the last look, it is time for another
 KEY_STRIDE = 1 << 31  # cells: farther apart than any two on a board
@@ -161,14 +161,14 @@ class DriveState:
         """Have the map looked at, or so many of its cells."""
         cells = self.grid.cells
         self._n_news = 0
-        self.finder.look(self.grid.points()[thinned(cells, most)], self.n_scans)
+        self.finder.look(self.grid.points()[thin_out(cells, most)], self.n_scans)
 
     def _fetch(self, wait: bool = False) -> bool:
         news = self.finder.news(wait=wait)
         if news is not None:
             self.found, self.n_scans_found = news.found, news.n_scans
             if isinstance(self.grid, MovingGrid):
-                self.grid.give_up(left_within(self.grid, self.found))  # the next scan tells what is gone
+                self.grid.give_up(find_left_within(self.grid, self.found))  # the next scan tells what is gone
         return news is not None
 
     def finish(self) -> None:
@@ -202,7 +202,7 @@ class DriveState:
 
     def move_something(self) -> bool:
         """Move one shape to another place, unseen by the robot, as ``rearrange``; tell whether there was room."""
-        after = with_one_moved(self.world, self.pose, self._hand)
+        after = move_one_shape(self.world, self.pose, self._hand)
         if after is not None:
             self.rearrange(after)
         return after is not None
@@ -242,7 +242,7 @@ class DriveState:
     def compare(self) -> Table:
         """Return this drive beside the way-points and ``explore`` on the same board, which takes some seconds."""
         self.finish()
-        return compared((self.by_hand(), *automatic_runs(self.world, self.lidar, self.seed)))
+        return compare_runs((self.by_hand(), *automatic_runs(self.world, self.lidar, self.seed)))
 
     def by_hand(self) -> Run:
         """Return what came of this drive so far."""

@@ -11,9 +11,8 @@ outline that was seen.
 >>> oracle_fit(world, points, owners)[0].centroid.round(3).tolist()
 [0.1, 0.0]
 
-The fit is by least squares, side by side, and shares no code with the finding. Its limits: it knows of no right
-angles, so that a method which uses them can be closer; and it has no shape where a side has fewer than two points,
-though a method may guess it rightly.
+The fit is by least squares, told the kinds, and shares no code with the finding. Its limit: it has no shape where a
+side has fewer than two points, though a method may guess it rightly.
 
 Sources: total least squares by the smallest eigenvector of the scatter, Pearson (1901), "On lines and planes of closest
 fit"; the circle's geometric fit by least squares, as in Chernov (2010), "Circular and Linear Regression".
@@ -36,6 +35,7 @@ from ..world import World
 
 NOBODY = -1  # the owner of a point that comes from nowhere
 NOISE_LIMIT = 6.0  # a reading farther than this from the true range, in standard deviations, is no noise
+QUARTER = np.array([[0, -1], [1, 0]])  # a turn
 EXACT = 1e-9  # m: without noise a reading differs by rounding at most
 
 
@@ -164,14 +164,14 @@ def oracle_fit(world: World, points: Floats, owners: Ints) -> list[Shape | None]
     for number, shape in enumerate(world.shapes):
         own = owners[:, 0] == number
         if isinstance(shape, Circle):
-            fits.append(_fitted_circle(points[own]))
+            fits.append(_fit_circle(points[own]))
         else:
             sides = [points[own & (owners[:, 1] == side)] for side in range(len(shape.vertices))]
-            fits.append(_fitted_polygon(sides))
+            fits.append(_fit_polygon(sides, right_angles=shape.kind == "rectangle"))
     return fits
 
 
-def _fitted_circle(points: Floats) -> Circle | None:
+def _fit_circle(points: Floats) -> Circle | None:
     from scipy.optimize import least_squares
 
     if len(points) < 3:
@@ -182,13 +182,22 @@ def _fitted_circle(points: Floats) -> Circle | None:
     return Circle(fit.x[:2], abs(float(fit.x[2])))
 
 
-def _fitted_polygon(sides: list[Floats]) -> Polygon | None:
-    """Fit a line ``n . p = d`` to the points of each side, and take the corners where neighbours meet."""
+def _fit_polygon(sides: list[Floats], *, right_angles: bool) -> Polygon | None:
+    """Fit a line ``n . p = d`` to the points of each side, and take the corners where neighbours meet.
+
+    n is the eigenvector of the least eigenvalue of a side's scatter; of a rectangle, whose n_k is n_0 turned by k
+    quarters, of the sum of all four scatters turned back.
+    """
     if min(map(len, sides)) < 2:
         return None
     middles = np.array([side.mean(axis=0) for side in sides])
-    scatter = [(side - middle).T @ (side - middle) for side, middle in zip(sides, middles, strict=True)]
-    normals = np.array([np.linalg.eigh(s)[1][:, 0] for s in scatter])
+    scatters = np.array([(side - middle).T @ (side - middle) for side, middle in zip(sides, middles, strict=True)])
+    if right_angles:
+        turns = np.array([np.linalg.matrix_power(QUARTER, k) for k in range(4)])
+        together = (turns.transpose(0, 2, 1) @ scatters @ turns).sum(axis=0)
+        normals = turns @ np.linalg.eigh(together)[1][:, 0]
+    else:
+        normals = np.linalg.eigh(scatters)[1][:, :, 0]
     offsets = (normals * middles).sum(axis=1)
     pairs = np.stack([np.roll(normals, 1, axis=0), normals], axis=1)  # (K, 2, 2): each side with the one before it
     try:

@@ -19,7 +19,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from itertools import groupby
 
-from ..table import Table
+from ..table import Table, count
 from .estimate import Estimate, columns_of, in_columns
 from .row import Score
 
@@ -91,9 +91,7 @@ def _maps(lines: Sequence[Line]) -> str:
     '7 maps (published: 10)'
     """
     counts = {line.method: line.n for line in lines}
-    ours = [
-        f"{n} map{'s' * (n != 1)}" for n in dict.fromkeys(n for method, n in counts.items() if method != "published")
-    ]
+    ours = [count(n, "map") for n in dict.fromkeys(n for method, n in counts.items() if method != "published")]
     theirs = counts.get("published")
     told = ", ".join(ours) or f"{theirs} maps"
     return told if theirs is None or set(counts.values()) == {theirs} else f"{told} (published: {theirs})"

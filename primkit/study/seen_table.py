@@ -17,7 +17,7 @@ from itertools import groupby
 
 import numpy as np
 
-from ..table import Table
+from ..table import Table, count
 from .estimate import Estimate, ratio_of
 from .paper_table import Line
 from .row import Row
@@ -71,7 +71,7 @@ def _line(group: str, rows: Sequence[Row], enough: bool) -> Line | None:
     _, *parts = np.mean([astuple(score) for scores in chosen for score in scores], axis=0).tolist()
     n_shapes, n_all, n_maps = int(sums[:, 0].sum()), sum(row.n_shapes for row in rows), len(sums)
     return Line(
-        maps=f"{group}: {n_shapes} of {n_all} shapes, on {n_maps} map{'s' * (n_maps != 1)}",
+        maps=f"{group}: {n_shapes} of {n_all} shapes, on {count(n_maps, 'map')}",
         method=rows[0].settings,
         scoring=f"within {1000 * rows[0].tolerance:g} mm",
         n=n_maps,

@@ -15,7 +15,7 @@ from functools import cache
 import numpy as np
 
 from ..arguments import Floats
-from ..circles import fit_circle
+from ..circles import Method, fit_circle
 from ..palette import BLACK, BLUE, GREY, INK, ORANGE, PALE, PURPLE, VERMILION
 from ..shapes import Circle
 from .drawing import Frame, picture, square_frame
@@ -61,7 +61,7 @@ def arcs() -> Explorer:
 def draw_arcs(arc: int, noise: float, seed: int, show: str) -> str:
     """Draw points on an arc of the true circle, and fitted circles: arc in degrees, noise in mm."""
     points = points_on_arc(arc, noise / 1000, seed)
-    fits = {name: fitted(points, name) for name, *_ in CIRCLE_FITS}
+    fits = {name: fit_by_name(points, name) for name, *_ in CIRCLE_FITS}
     said = ", ".join(f"{name} {_millimetres(circle)}" for name, circle in fits.items())
     return _drawn(
         points,
@@ -110,16 +110,13 @@ def points_on_arc(arc: float, noise: float, seed: int) -> Floats:
     return TRUE_CIRCLE.center + radius[:, None] * np.column_stack([np.cos(bearing), np.sin(bearing)])
 
 
-def fitted(points: Floats, name: str) -> Circle | None:
+def fit_by_name(points: Floats, name: str) -> Circle | None:
     """Return the circle that a way of ``CIRCLE_FITS`` sees in the points; None when it sees a line."""
     if name == "mean":
         center = points.mean(axis=0)
         return Circle(center, float(np.hypot(*(points - center).T).mean()))
-    if name == "Kasa":
-        return fit_circle(points, "kasa")
-    if name == "Pratt":
-        return fit_circle(points, "pratt")
-    return fit_circle(points, "taubin" if name == "Taubin" else "geometric")
+    methods: dict[str, Method] = {"Kasa": "kasa", "Pratt": "pratt", "Taubin": "taubin", "geometric": "geometric"}
+    return fit_circle(points, methods[name])
 
 
 def _millimetres(circle: Circle | None) -> str:

@@ -19,7 +19,7 @@ from ..palette import BLUE, GREY, INK, ORANGE, PALE, SKY, VERMILION
 from ..shapes import Circle
 from ..table import count
 from ..world import World
-from .drawing import Frame, path, picture, square_frame
+from .drawing import Frame, path, picture, signed, square_frame
 from .slider import Choice, Explorer, Picture, Slider, explore
 
 DRIVEN_CIRCLE = Circle((0.0036, -0.0047), 0.06)  # not in the middle of a cell, nor on a border
@@ -29,6 +29,7 @@ CELLS_VIEW = 0.38  # m: the piece of the board that is seen
 LEAST_LINED_CELL = 4  # mm: smaller cells are dots, without borders
 LOST_RADIUS = 0.5  # m: a circle larger than this is none that a student could look for
 CELL_BORDERS = (-0.06, -0.04, -0.02, 0.0, 0.02, 0.04, 0.06, 0.08)  # m: of the diagram's cells
+SIGNS_OF_CELLS = (("true", BLUE, "line"), ("found", VERMILION, "dashed"))
 READ_AT_CENTER, READ_AT_CORNER = "its centre", "its corner"
 
 
@@ -82,14 +83,7 @@ def draw_cells(cell: int, poses: int, error: float, read: str) -> str:
         "" if found is None else frame.circle(found.center, found.radius, VERMILION, 2, "6 4"),
         frame.points(points, INK, "square", 2.2 + cell / 3) if fine else frame.points(points, INK, size=4),
         *(frame.robot(pose, GREY, 5) for pose in seen.poses),
-        frame.legend(
-            [
-                ("true", BLUE, "line"),
-                ("found", VERMILION, "dashed"),
-                ("occupied", INK if fine else SKY, "square"),
-                ("robot", GREY, "triangle"),
-            ]
-        ),
+        frame.legend([*SIGNS_OF_CELLS, ("occupied", INK if fine else SKY, "square"), ("robot", GREY, "triangle")]),
         title=_title(cell, found),
         says=_says(int(seen.hits.sum()), len(grid), cell, poses, error, found),
     )
@@ -149,10 +143,11 @@ def draw_diagram() -> Picture:
     hit = pose[:2] + reach * along
     cell = Grid(side).to_cells([hit])
     center = Grid(side).to_points(cell)[0]
-    arcs = [pose[:2] + r * np.column_stack([np.cos(a), np.sin(a)]) for r, a in _arcs(pose[2], beam)]
+    angles = ((0.045, np.linspace(0, pose[2], 15)), (0.055, np.linspace(pose[2], pose[2] + beam, 15)))
+    arcs = [pose[:2] + r * np.column_stack([np.cos(a), np.sin(a)]) for r, a in angles]  # of heading and bearing
     names = [
-        *(frame.text(((n + 0.5) * side, -0.04), f"i = {_minus(n)}", GREY, "middle", (0, -8)) for n in range(-3, 4)),
-        *(frame.text((-0.06, (n + 0.5) * side), f"j = {_minus(n)}", GREY, shift=(6, 4)) for n in range(-1, 3)),
+        *(frame.text(((n + 0.5) * side, -0.04), f"i = {signed(n)}", GREY, "middle", (0, -8)) for n in range(-3, 4)),
+        *(frame.text((-0.06, (n + 0.5) * side), f"j = {signed(n)}", GREY, shift=(6, 4)) for n in range(-1, 3)),
     ]
     svg = picture(
         frame,
@@ -181,13 +176,3 @@ def draw_diagram() -> Picture:
         ),
     )
     return Picture(svg, "Diagram: from a range to a cell")
-
-
-def _minus(n: int) -> str:
-    """Return a whole number with a true minus sign."""
-    return str(n).replace("-", "\u2212")
-
-
-def _arcs(heading: float, beam: float) -> list[tuple[float, Floats]]:
-    """Return radius and angles of the arcs that mark heading and bearing."""
-    return [(0.045, np.linspace(0, heading, 15)), (0.055, np.linspace(heading, heading + beam, 15))]

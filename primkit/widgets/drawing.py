@@ -20,6 +20,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape, unescape
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -92,15 +93,11 @@ class Frame:
             moves = "".join(f"M{_n(x - r)} {y:g}{turn}" for x, y in places)
             return path(moves, stroke=color, stroke_width=1.5)
         if marker == "cross":
-            moves = "".join(
-                f"M{_n(x - r)} {_n(y - r)}l{size:g} {size:g}m{-size:g} 0l{size:g} {-size:g}" for x, y in places
-            )
+            strokes = f"l{size:g} {size:g}m{-size:g} 0l{size:g} {-size:g}"
+            moves = "".join(f"M{_n(x - r)} {_n(y - r)}{strokes}" for x, y in places)
             return path(moves, stroke=color, stroke_width=1.8)
-        outline = MARKERS[marker]
-        moves = "".join(
-            "M" + "L".join(f"{_n(x + r * dx)} {_n(y + r * dy)}" for dx, dy in outline) + "Z" for x, y in places
-        )
-        return path(moves, fill=color)
+        outlines = ([(x + r * dx, y + r * dy) for dx, dy in MARKERS[marker]] for x, y in places)
+        return path("".join(f"{_through(outline)}Z" for outline in outlines), fill=color)
 
     def segments(self, starts: ArrayLike, ends: ArrayLike, color: str = GREY, width: float = 1, dash: str = "") -> str:
         """Draw a straight stroke from each start to its end, shape (N, 2) each; ``dash`` as in "4 3"."""
@@ -131,9 +128,7 @@ class Frame:
         color = color or KIND_COLORS[shape.kind]
         if isinstance(shape, Circle):
             return self.circle(shape.center, shape.radius, color, width, dash, fill)
-        edge: dict[str, str | float] = (
-            {"stroke": color, "stroke_width": width, "stroke_dasharray": dash} if width else {}
-        )
+        edge: dict[str, Any] = {"stroke": color, "stroke_width": width, "stroke_dasharray": dash} if width else {}
         return path(_through(self.at(shape.vertices)) + "Z", fill=color, fill_opacity=fill, **edge)
 
     def robot(self, pose: ArrayLike, color: str = INK, size: float = 9) -> str:
@@ -167,10 +162,8 @@ class Frame:
         tall = 17 * len(entries) + 6
         left = PAD_LEFT + 5 if "left" in corner else self.width - PAD_RIGHT - 5 - wide
         top = PAD_TOP + 5 if "top" in corner else self.height - PAD_BOTTOM - 5 - tall
-        box = (
-            f'<rect x="{_n(left)}" y="{_n(top)}" width="{_n(wide)}" height="{tall}" fill="white" fill-opacity="0.85"/>'
-        )
-        return box + "".join(
+        place = f'x="{_n(left)}" y="{_n(top)}" width="{_n(wide)}" height="{tall}"'
+        return f'<rect {place} fill="white" fill-opacity="0.85"/>' + "".join(
             _sign(left + 6, top + 12 + 17 * row, color, sign)
             + words_at(left + 30, top + 16 + 17 * row, words, color=INK)
             for row, (words, color, sign) in enumerate(entries)
@@ -185,15 +178,14 @@ class Frame:
         ys = [y for _, y in self.at([(self.x[0], t) for t in y_ticks])]
         box = f"M{left:g} {top:g}H{right:g}V{bottom:g}H{left:g}Z"
         marks = "".join(f"M{x:g} {bottom:g}v5" for x in xs) + "".join(f"M{left:g} {y:g}h-5" for y in ys)
-        middle = f"{_n((top + bottom) / 2)}"
         return "".join(
             [
                 path(box, stroke=PALE, stroke_width=1),
                 path(marks, stroke=GREY, stroke_width=1),
-                *(words_at(x, bottom + 18, _number(t), anchor="middle") for x, t in zip(xs, x_ticks, strict=True)),
-                *(words_at(left - 8, y + 4, _number(t), anchor="end") for y, t in zip(ys, y_ticks, strict=True)),
+                *(words_at(x, bottom + 18, signed(t), anchor="middle") for x, t in zip(xs, x_ticks, strict=True)),
+                *(words_at(left - 8, y + 4, signed(t), anchor="end") for y, t in zip(ys, y_ticks, strict=True)),
                 words_at((left + right) / 2, bottom + 36, self.x_label, anchor="middle"),
-                words_at(16, float(middle), self.y_label, anchor="middle", turned=True),
+                words_at(16, (top + bottom) / 2, self.y_label, anchor="middle", turned=True),
             ]
         )
 
@@ -319,9 +311,8 @@ def _svg(width: int, height: int, title: str, says: str, body: str) -> str:
 def _sign(x: float, y: float, color: str, sign: str) -> str:
     """Draw the sign of a legend's entry, 18 px wide, from (x, y) on."""
     if sign in ("line", "dashed"):
-        return path(
-            f"M{_n(x)} {_n(y)}h18", stroke=color, stroke_width=2, stroke_dasharray="5 3" if sign == "dashed" else ""
-        )
+        dash = "5 3" if sign == "dashed" else ""
+        return path(f"M{_n(x)} {_n(y)}h18", stroke=color, stroke_width=2, stroke_dasharray=dash)
     # A frame of its own in which one unit is one pixel, and (0, 0) the middle of the sign.
     here = Frame(
         (PAD_LEFT - x - 9, PAD_LEFT - x - 8),
@@ -342,8 +333,8 @@ def _n(value: float) -> str:
     return f"{round(value + PIXEL_TIE, 1) + 0.0:g}"
 
 
-def _number(value: float) -> str:
-    """Return a tick's number, with a true minus sign."""
+def signed(value: float) -> str:
+    """Return a number with a true minus sign."""
     return f"{value:g}".replace("-", "\u2212")
 
 

@@ -23,6 +23,7 @@ from ..palette import BLUE, CLUSTER_COLORS, GREY, INK, ORANGE, SKY, VERMILION
 from ..ransac import draw_samples
 from ..robot import teleport_poses
 from ..shapes import Polygon
+from ..table import count
 from ..world import World
 from .drawing import Frame, picture, square_frame
 from .slider import Explorer, Picture, Slider, explore
@@ -71,7 +72,8 @@ def draw_edges(trial: int, threshold: float, noise: float, seed: int) -> str:
     near = LINE.residuals(lines, points) <= reach
     counts = np.count_nonzero(near, axis=1)
     best, now = int(np.argmax(counts)), trial - 1
-    frame = _around(RECTANGLE)
+    x, y = RECTANGLE.centroid.tolist()
+    frame = square_frame((x, y + 0.04), 0.42)  # with room for the legend above
     return picture(
         frame,
         _band(frame, Line(*lines[now]), reach, ORANGE),
@@ -88,7 +90,7 @@ def draw_edges(trial: int, threshold: float, noise: float, seed: int) -> str:
                 (f"best so far, trial {best + 1}: {counts[best]} inliers", BLUE, "line"),
             ]
         ),
-        title=f"After {trial} trial{'s' * (trial > 1)}: {counts[best]} of {len(points)} points agree",
+        title=f"After {count(trial, 'trial')}: {counts[best]} of {len(points)} points agree",
         says=f"Trial {trial} draws two points and finds {counts[now]} inliers of {len(points)}; "
         f"the best so far is trial {best + 1} with {counts[best]}.",
     )
@@ -156,12 +158,6 @@ def draw_diagram() -> Picture:
         "of t to each side, and p does not.",
     )
     return Picture(svg, "Diagram: a line in normal form, and its band")
-
-
-def _around(polygon: Polygon) -> Frame:
-    """Return a square frame around a polygon, with room for a legend above it."""
-    x, y = polygon.centroid
-    return square_frame((float(x), float(y) + 0.04), 0.42)
 
 
 def _across(frame: Frame, line: Line, color: str, width: float, dash: str = "") -> str:

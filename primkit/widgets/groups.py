@@ -70,9 +70,9 @@ def draw_groups(board: str, start: str, k: int, seed: int, step: int) -> str:
     """Draw K-Means after so many steps: 0 is the start, odd steps assign, even ones move the centres."""
     points = points_of(board)
     first = random_points if start == RANDOM_START else spread_points
-    way = walk(points, first(points, k, np.random.default_rng(seed)))
+    way = run_kmeans(points, first(points, k, np.random.default_rng(seed)))
     used = way[max(0, step - 1) // 2]  # the centres that the labels were made with
-    centers, labels = way[step // 2], nearest(points, used)
+    centers, labels = way[step // 2], assign(points, used)
     frame = board_frame()
     if step == 0:
         drawn = frame.points(points, GREY, size=3)
@@ -97,11 +97,11 @@ def _finding(points: Floats, way: Floats, step: int) -> tuple[str, str]:
     if step == 0:
         return f"The start: k = {k}, no groups yet", f"{k} of {len(points)} points are taken as the first centres."
     used = way[(step - 1) // 2]
-    labels = nearest(points, used)
+    labels = assign(points, used)
     spread = f"J = {((points - way[turn][labels]) ** 2).sum():.2f} m²"
     if step % 2:
-        settled = turn > 0 and np.array_equal(labels, nearest(points, way[turn - 1]))
-        changed = 0 if settled else len(points) if turn == 0 else int((labels != nearest(points, way[turn - 1])).sum())
+        settled = turn > 0 and np.array_equal(labels, assign(points, way[turn - 1]))
+        changed = 0 if settled else len(points) if turn == 0 else int((labels != assign(points, way[turn - 1])).sum())
         did = f"{changed} of {len(points)} points change their group"
     else:
         moved = 1000 * float(np.hypot(*(way[turn] - used).T).max())
@@ -166,26 +166,26 @@ def points_of(board: str) -> Floats:
     return grid.points()
 
 
-def nearest(points: Floats, centers: Floats) -> Labels:
+def assign(points: Floats, centers: Floats) -> Labels:
     """Return the number of each point's nearest centre, shape (N,): the assignment."""
-    return np.argmin(squares(points, centers), axis=1)
+    return np.argmin(square_distances(points, centers), axis=1)
 
 
-def squares(points: Floats, centers: Floats) -> Floats:
+def square_distances(points: Floats, centers: Floats) -> Floats:
     """Return the squared distance of each point to each centre, shape (N, k), square metres."""
     return (points[:, [0]] - centers[:, 0]) ** 2 + (points[:, [1]] - centers[:, 1]) ** 2
 
 
-def means(points: Floats, labels: Labels, centers: Floats) -> Floats:
+def update(points: Floats, labels: Labels, centers: Floats) -> Floats:
     """Return the mean of each group, shape (k, 2), metres; the old centre where it is empty: the update."""
     return np.array([points[labels == j].mean(axis=0) if (labels == j).any() else c for j, c in enumerate(centers)])
 
 
-def walk(points: Floats, centers: Floats) -> Floats:
+def run_kmeans(points: Floats, centers: Floats) -> Floats:
     """Return the centres at the start and after each round, shape (KMEANS_ROUNDS + 1, k, 2), metres."""
     way = [centers]
     while len(way) <= KMEANS_ROUNDS and not (len(way) > 1 and np.array_equal(way[-1], way[-2])):
-        way.append(means(points, nearest(points, way[-1]), way[-1]))
+        way.append(update(points, assign(points, way[-1]), way[-1]))
     return np.array(way + way[-1:] * (KMEANS_ROUNDS + 1 - len(way)))  # settled: no round moves them any more
 
 
@@ -198,7 +198,7 @@ def spread_points(points: Floats, k: int, rng: np.random.Generator) -> Floats:
     """Return first centres far from each other, shape (k, 2): k-means++, Arthur and Vassilvitskii (2007)."""
     centers = points[[rng.integers(len(points))]]
     while len(centers) < k:
-        far = squares(points, centers).min(axis=1)  # to the nearest centre so far
+        far = square_distances(points, centers).min(axis=1)  # to the nearest centre so far
         centers = np.vstack([centers, points[rng.choice(len(points), p=far / far.sum())]])
     return centers
 
@@ -210,8 +210,8 @@ def draw_diagram() -> Picture:
     """Return the drawing behind the lesson's idea: each point to its nearest centre, each centre to its mean."""
     points = np.array([(1, 1), (2, 3), (3, 1), (4, 3), (7, 4), (8, 2), (9, 5), (8, 6)]) / 10
     old = np.array([(0.2, 0.5), (0.45, 0.35)])
-    labels = nearest(points, old)
-    new = means(points, labels, old)
+    labels = assign(points, old)
+    new = update(points, labels, old)
     first = _half(points, labels, old, old, "Each point takes its nearest centre")
     second = _half(points, labels, old, new, "Each centre moves to its group's mean")
     says = "Left: a stroke from each point to the nearer of two centres, the border half-way between them. "

@@ -16,6 +16,7 @@ import numpy as np
 from ..arguments import Floats
 from ..palette import BLUE, GREY, INK, ORANGE, PALE, VERMILION
 from ..robot import AXLE, WHEEL, moved
+from ..table import count
 from .drawing import Frame, board_frame, picture
 from .slider import Explorer, Picture, Slider, explore
 
@@ -64,13 +65,13 @@ def draw_wheels(left: float, right: float, seconds: float, pieces: int) -> str:
         frame.legend(
             [
                 ("arc", BLUE, "line"),
-                (f"{_pieces(pieces)}: {off:.0f} mm off", VERMILION, "square"),
+                (f"{count(pieces, 'straight piece')}: {off:.0f} mm off", VERMILION, "square"),
                 *([("turning centre", ORANGE, "cross")] if abs(radius) <= BOARD_SIDE / 2 else []),
             ]
         ),
         title=_title(left, right, turn),
         says=f"{_how(left, right)} for {seconds:g} s: {_where(left, right, radius, turn, seconds)}; "
-        f"{_pieces(pieces)} end{'s' * (pieces == 1)} {off:.0f} mm off.",
+        f"{count(pieces, 'straight piece')} end{'s' * (pieces == 1)} {off:.0f} mm off.",
     )
 
 
@@ -99,10 +100,6 @@ def _circle(frame: Frame, radius: float) -> str:
     starts = seen[:-1] & seen[1:]
     cross = frame.points([middle], ORANGE, "cross", 10) if abs(radius) <= BOARD_SIDE / 2 else ""
     return frame.segments(ring[:-1][starts], ring[1:][starts], PALE, 1) + cross
-
-
-def _pieces(pieces: int) -> str:
-    return f"{pieces} straight piece{'s' * (pieces != 1)}"
 
 
 def _title(left: float, right: float, turn: float) -> str:

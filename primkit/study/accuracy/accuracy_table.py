@@ -23,7 +23,7 @@ import numpy as np
 from ...arguments import Floats, as_count
 from ...formats import StrPath
 from ...pipeline import Settings
-from ...table import Table, as_csv
+from ...table import Table, as_csv, count
 from ..estimate import Estimate, columns_of, in_columns, mean_of, ratio_of, share_of
 from ..many import METHODS, checked_jobs, perform_all
 from ..oracle import ORACLE, Oracle
@@ -228,9 +228,8 @@ def _ratio(ours: Floats, theirs: Floats) -> Estimate | None:
 
 
 def _heading(line: AccuracyLine) -> str:
-    maps = f"{line.n_maps} map{'s' * (line.n_maps != 1)}"
     repeats = f", {line.n_runs} runs" if line.n_runs != line.n_maps else ""
-    return f"{line.level}, {maps}{repeats}"
+    return f"{line.level}, {count(line.n_maps, 'map')}{repeats}"
 
 
 def _notes(note: str, lines: Sequence[AccuracyLine], seed: int) -> tuple[str, ...]:
@@ -242,8 +241,8 @@ def _notes(note: str, lines: Sequence[AccuracyLine], seed: int) -> tuple[str, ..
         + (f"; {' and '.join(told)} is told the number." if told else "."),
         "centre, dimens.: root mean square errors of the shapes that the method and the oracle both found as what they "
         "are (centre within 10 cm). x oracle: divided by the oracle's on the same shapes.",
-        "oracle: the least-squares fit that is told which point belongs to which side. It does not know of right "
-        "angles, and has no shape where a side was not seen: a method can be ahead of it.",
+        "oracle: the least-squares fit that is told the kinds, and which point belongs to which side. It has no shape "
+        "where a side was not seen: a method can be ahead of it.",
         "time: median computing time of a map.",
         "In brackets: 95 % interval over the maps (bootstrap; of the count Wilson's). Where all n maps score 1, up to "
         "about 3/n of all such maps may still score less.",

@@ -29,6 +29,7 @@ from ...formats import paper_suite
 from ...lidar import Lidar
 from ...pipeline import PAPER, ROBUST, Settings
 from ...robot import waypoints
+from ...table import count
 from ...world import World, random_world
 from ..experiment import Experiment
 from ..oracle import Oracle
@@ -120,8 +121,7 @@ def _noisy(start: Condition) -> tuple[Level, ...]:
 
 
 def _crowd(n: int) -> Level:
-    name = f"{n} shape{'s' * (n != 1)}"
-    return Level(name, n, replace(PLAIN, n_shapes=n, gap=PLAIN.gap if n <= MOST_MIXED else CROWDED_GAP))
+    return Level(count(n, "shape"), n, replace(PLAIN, n_shapes=n, gap=PLAIN.gap if n <= MOST_MIXED else CROWDED_GAP))
 
 
 SWEEPS: Mapping[str, Sweep] = {

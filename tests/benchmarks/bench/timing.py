@@ -18,7 +18,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from primkit.palette import BLACK, BLUE, GREEN, GREY, INK, ORANGE, PALE, PURPLE, SKY, VERMILION
 from primkit.plots.look import as_axes, letters, marks, set_title
-from primkit.plots.story import Picture
+from primkit.plots.story import ShownFigure
 
 Curve = tuple[Sequence[float], Sequence[float]]
 
@@ -90,6 +90,6 @@ def bench_figure(curves: Mapping[str, Curve]) -> Figure:
     >>> bench_figure({"ours": ([4], [1.0])}).axes[0].get_xlabel()
     'shapes on the board'
     """
-    figure = Picture(figsize=(7.2, 4.8), layout="constrained")
+    figure = ShownFigure(figsize=(7.2, 4.8), layout="constrained")
     plot_bench(curves, figure.add_subplot())
     return figure
