@@ -27,7 +27,7 @@ from typing import Literal
 
 import numpy as np
 
-from .arguments import ROUNDING, Floats, as_positive, check_type
+from .arguments import ROUNDING, Floats, as_positive, check_type, doubt
 from .measure import Detection
 from .paper import published_values
 from .shapes import Circle, Polygon, Shape
@@ -211,6 +211,9 @@ def evaluate(
     check_type(world, World, "world must be a World, as in evaluate(found, world)")
     check_type(found, Iterable, "found must be a list of detections or shapes, as in evaluate(found, world)")
     tolerance, gate = as_positive(tolerance, "tolerance", zero=True), as_positive(gate, "gate", zero=True)
+    for name, value in (("tolerance", tolerance), ("gate", gate)):
+        if value > world.size:
+            doubt(f"{name} is {value:g} m on a board of {world.size:g} m: is it in millimetres?", depth=1)
     shapes = [_as_shape(item) for item in found]
     if protocol == "fair":
         pairs = match(shapes, world.shapes, gate)

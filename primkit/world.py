@@ -24,7 +24,7 @@ from typing import Literal
 
 import numpy as np
 
-from .arguments import Floats, as_count, as_positive, as_rng, check_type, short
+from .arguments import Floats, as_count, as_positive, as_rng, check_type, doubt, short
 from .palette import INK, KIND_COLORS, PALE
 from .shapes import PRIMITIVES, Circle, Kind, Polygon, Shape, turns_of
 from .show import census, thumbnail
@@ -72,6 +72,11 @@ class World:
         If something other than a Circle or a Polygon is among the shapes, the size is not above zero, or walls is
         neither True nor False.
 
+    Warns
+    -----
+    LikelyWrong
+        If a shape lies off the board, or on another one.
+
     Examples
     --------
     >>> World([Circle((0, 0), 0.1)]).shapes[0].kind
@@ -96,6 +101,8 @@ class World:
         object.__setattr__(self, "size", as_positive(size, "size"))
         check_type(walls, (bool, np.bool_), "walls must be True or False")
         object.__setattr__(self, "walled", bool(walls))
+        if sentence := _misplaced(shapes, self.size):
+            doubt(sentence, depth=1)
 
     @property
     def walls(self) -> Floats:
@@ -126,6 +133,30 @@ class World:
         With fewer than two shapes it is infinite.
         """
         return min((gap_between(a, b) for a, b in combinations(self.shapes, 2)), default=float("inf"))
+
+
+def _misplaced(shapes: Sequence[Shape], size: float) -> str:
+    """Return a sentence on the first shape that lies wholly off the board or on another one; empty if none does."""
+    corners = [shape.center if isinstance(shape, Circle) else shape.vertices for shape in shapes]
+    around = [shape.radius if isinstance(shape, Circle) else 0.0 for shape in shapes]
+    low = np.array([np.min(np.atleast_2d(c), axis=0) - r for c, r in zip(corners, around, strict=True)]).reshape(-1, 2)
+    high = np.array([np.max(np.atleast_2d(c), axis=0) + r for c, r in zip(corners, around, strict=True)]).reshape(-1, 2)
+    off = ((low > size / 2) | (high < -size / 2)).any(axis=1)
+    if off.any():
+        return f"{shapes[int(np.argmax(off))]} lies off the board of {size:g} m: is it in millimetres?"
+    order = np.argsort(low[:, 0], kind="stable")
+    for place, a in enumerate(order):
+        for b in order[place + 1 :]:
+            if low[b, 0] > high[a, 0]:
+                break
+            if (low[b, 1] < high[a, 1]) and (low[a, 1] < high[b, 1]):
+                depth = min(
+                    shapes[a].signed_distance(shapes[b].outline(40)).min(),
+                    shapes[b].signed_distance(shapes[a].outline(40)).min(),
+                )
+                if depth < -0.01 * min(shapes[a].reach, shapes[b].reach):
+                    return f"{shapes[a]} and {shapes[b]} lie on each other"
+    return ""
 
 
 def gap_between(a: Shape, b: Shape) -> float:

@@ -135,6 +135,7 @@ def test_the_scores_are_what_their_formulas_say(seed, n_true, n_found, protocol)
     assert all(0 <= score <= 1 for score in scores(report))
 
 
+@pytest.mark.filterwarnings("ignore::primkit.arguments.LikelyWrong")
 @given(seed=seeds, x=st.floats(-10, 10), y=st.floats(-10, 10))
 def test_order_and_place_do_not_matter(seed, x, y):
     rng = np.random.default_rng(seed)
@@ -432,6 +433,7 @@ def test_every_centre_that_is_too_far_left_or_down_is_right(x, y, right):
     assert m.center_right == right
 
 
+@pytest.mark.filterwarnings("ignore::primkit.arguments.LikelyWrong")
 def test_tolerance_and_gate_play_no_part():
     far = Circle((0.3, 0.3), 0.13)
     expected = scores(published([far], CIRCLE))

@@ -169,7 +169,7 @@ def test_scans_without_hits_add_nothing():
 
 
 def test_misses_are_not_points():
-    ranges = np.array([[0.2, INF, NAN]])
+    ranges = np.array([[0.2, INF, 0.0]])
     grid = filled(Scans(np.zeros((1, 3)), np.array([0, 1.0, 2.0]), ranges, np.zeros(1, dtype=bool)))
     assert grid.cells.tolist() == [[200, 0]]
 
@@ -208,12 +208,12 @@ ADD_FAILURES = {
     ),
     "so far that the cell is infinite": (
         [(0, 1e308)],
-        "points must lie within 1.07374e+06 m of the origin, got one 1e+308 m out",
+        "points must be finite and at most 1e+50, got (0.0, 1e+308) in row 0",
     ),
     "one point without its row": ((0.1, 0.1), "points must have shape (N, 2), got shape (2,)"),
     "three numbers": ([(0.1, 0.1, 0)], "points must have shape (N, 2), got shape (1, 3)"),
     "text": ("ab", "points must be numbers in an array of shape (N, 2), got 'ab'"),
-    "None": (None, "points must have shape (N, 2), got shape ()"),
+    "None": (None, "points must be numbers in an array of shape (N, 2), got None"),
 }
 
 
@@ -230,8 +230,9 @@ def test_add_failure_leaves_the_grid_as_it_was(points, sentence):
 
 def test_add_failure_on_scans_leaves_the_grid_as_it_was():
     grid = filled([(0.1, 0.1)])
-    lost = Scans(np.array([(NAN, 0, 0)]), np.zeros(1), np.array([[0.2]]), np.zeros(1, dtype=bool))
-    with pytest.raises(ValueError, match=exactly("points must be finite, got (nan, 0.0) in row 0")):
+    lost = Scans(np.array([(2e6, 0, 0)]), np.zeros(1), np.array([[0.2]]), np.zeros(1, dtype=bool))
+    sentence = "points must lie within 1.07374e+06 m of the origin, got one 2e+06 m out"
+    with pytest.raises(ValueError, match=exactly(sentence)):
         grid.add(lost)
     assert grid.cells.tolist() == [[100, 100]]
 

@@ -878,11 +878,11 @@ LIDAR_FAILURES = {
     "noise infinite": ({"noise_std": INF}, "noise_std must be a finite number >= 0, got inf"),
     "period zero": ({"period": 0}, "period must be a finite number > 0, got 0"),
     "period NaN": ({"period": NAN}, "period must be a finite number > 0, got nan"),
-    "dropout negative": ({"dropout": -0.1}, "dropout must be a finite number >= 0, got -0.1"),
+    "dropout negative": ({"dropout": -0.1}, "dropout must be a share from 0 to 1, got -0.1"),
     "dropout in percent": ({"dropout": 5}, "dropout must be a share from 0 to 1, got 5"),
-    "spurious NaN": ({"spurious": NAN}, "spurious must be a finite number >= 0, got nan"),
+    "spurious NaN": ({"spurious": NAN}, "spurious must be a share from 0 to 1, got nan"),
     "spurious above one": ({"spurious": 1.001}, "spurious must be a share from 0 to 1, got 1.001"),
-    "spurious a truth value": ({"spurious": True}, "spurious must be a finite number >= 0, got True"),
+    "spurious a truth value": ({"spurious": True}, "spurious must be a share from 0 to 1, got True"),
 }
 
 

@@ -469,6 +469,7 @@ def test_labels_follow_the_size_of_the_axes(ax):
     assert not any(a.intersects(b) for a, b in combinations(boxes, 2))
 
 
+@pytest.mark.filterwarnings("ignore::primkit.arguments.LikelyWrong")
 def test_a_far_label_is_tied_to_its_shape(ax):
     ring = [Circle((0.1 * np.cos(t), 0.1 * np.sin(t)), 0.05) for t in np.arange(8) * np.pi / 4]
     plot_world(World([Circle((0, 0), 0.02), *ring]), ax)

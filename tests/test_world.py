@@ -145,6 +145,7 @@ LEAST_GAPS = {
 }
 
 
+@pytest.mark.filterwarnings("ignore::primkit.arguments.LikelyWrong")
 @pytest.mark.parametrize(("shapes", "gap"), LEAST_GAPS.values(), ids=LEAST_GAPS)
 def test_least_gap(shapes, gap):
     assert World(shapes).least_gap() == pytest.approx(gap)

@@ -34,6 +34,7 @@ from .files import StrPath, as_path, bounded_read, naming, open_archive, unpacke
 SCAN_ENDINGS = (".npz",)
 # Two hours of driving, ten scans of 100 beams a second; holds for the archive, and for the floats that it becomes.
 SCANS_LIMIT = 64 * 2**20
+HEADS = 4096  # bytes beside the numbers, that say what they are
 
 
 def save_scans(scans: Scans, path: StrPath) -> None:
@@ -119,12 +120,13 @@ def _arrays_in(data: bytes) -> dict[str, NDArray[Any]]:
     with _refusing_damage():
         archive = open_archive(data)
     for field in SCAN_SHAPES:
-        name = f"{field}.npy"
-        if name not in archive.namelist():
+        if f"{field}.npy" not in archive.namelist():
             raise ValueError(f"must hold the arrays {', '.join(SCAN_SHAPES)}, got none called {field}")
-        limit(archive.getinfo(name).file_size, SCANS_LIMIT, "must unpack to at most {} bytes")
+    told = sum(archive.getinfo(f"{field}.npy").file_size for field in SCAN_SHAPES)
+    limit(told - HEADS, SCANS_LIMIT, "must unpack to at most {} bytes")
+    for field in SCAN_SHAPES:
         with _refusing_damage():
-            arrays[field] = _array_of(unpacked(archive, name, SCANS_LIMIT))
+            arrays[field] = _array_of(unpacked(archive, f"{field}.npy", SCANS_LIMIT + HEADS))
         check_scan_type(field, arrays[field].dtype)
         _check_room(arrays)  # what takes a byte here takes eight as a float
     return arrays
