@@ -19,6 +19,8 @@ Source: the paper's section 3.2, "LiDAR Data Acquisition and Grid Representation
 
 from __future__ import annotations
 
+from threading import Lock
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -31,6 +33,7 @@ from .table import count
 ON_BORDER = 1e-9
 # Cells are packed into one whole number, 31 bits each way: a board of 1 mm cells up to 2,000 km wide.
 HALF = 1 << 30
+ADDING = Lock()  # one for all grids, so that a grid can be copied: several threads may add at once
 
 
 class Grid:
@@ -66,7 +69,9 @@ class Grid:
             If a point is not finite or lies too far out for the grid; the grid then stays as it was.
         """
         points = seen.points() if isinstance(seen, Scans) else as_points(seen)
-        self._keys = np.union1d(self._keys, as_keys(self.to_cells(points)))
+        keys = as_keys(self.to_cells(points))
+        with ADDING:
+            self._keys = np.union1d(self._keys, keys)
 
     @property
     def cells(self) -> Ints:

@@ -78,7 +78,7 @@ def segment(
         if method == "link":
             raise ValueError(f'n_shapes must be None with method "link", which finds the number itself, got {n_shapes}')
     if len(points) == 0:
-        return np.empty(0, dtype=np.int64)
+        return np.empty(0, dtype=np.intp)
     if method == "link":
         return link(points)
     rng = as_rng(rng)
@@ -178,13 +178,13 @@ def link(points: ArrayLike, reach: float = LINK, neighbours: int = LINK_NEIGHBOU
     """
     points = as_points(points)
     if len(points) == 0:
-        return np.empty(0, dtype=np.int64)
+        return np.empty(0, dtype=np.intp)
     reach, neighbours = as_positive(reach, "reach"), as_count(neighbours, "neighbours")
     order = np.lexsort((points[:, 1], points[:, 0]))  # a lone point between two groups goes to the first one met
     ordered = points[order]
     first = np.append(True, (np.diff(ordered, axis=0) != 0).any(axis=1))  # of the points at one and the same place
-    place = np.cumsum(first) - 1
-    labels = np.empty(len(points), dtype=np.int64)
+    place = np.cumsum(first, dtype=np.intp) - 1
+    labels = np.empty(len(points), dtype=np.intp)
     labels[order] = _linked(ordered[first], np.bincount(place), reach + ROUNDING, neighbours)[place]
     sizes = np.bincount(labels + 1)  # strays, of label -1, stand first
     strays = (labels < 0) | (sizes[labels + 1] < LEAST_GROUP)
@@ -196,7 +196,7 @@ def _left_to_right(points: Floats, labels: NDArray[np.integer]) -> Labels:
     groups = np.unique(labels[labels >= 0])
     means = np.array([points[labels == g].mean(axis=0) for g in groups]).reshape(-1, 2)
     means = means.round(9)  # to a nanometre: one above the other stays so, whatever the order of summing
-    numbered = np.full(len(labels), -1, dtype=np.int64)
+    numbered = np.full(len(labels), -1, dtype=np.intp)
     for number, g in enumerate(np.lexsort((means[:, 1], means[:, 0]))):
         numbered[labels == groups[g]] = number
     return numbered
@@ -240,7 +240,7 @@ def _linked(places: Floats, n_at: Labels, reach: float, neighbours: int) -> Labe
         pairs = edge[cKDTree(places[edge]).query_pairs(reach, output_type="ndarray").T]
         group = _components(len(cells), group[cell[pairs]])[group]
 
-    labels = np.full(len(places), -1, dtype=np.int64)
+    labels = np.full(len(places), -1, dtype=np.intp)
     labels[handing_on] = _in_order(group[cell[handing_on]])
     for i, near in zip(rest, around, strict=True):  # the others take part in the first group within reach
         if not handing_on[i]:
@@ -253,12 +253,12 @@ def _cells(places: Floats, side: float) -> tuple[Floats, Labels]:
     ij = np.floor(places / side)
     row, column = (np.unique(axis, return_inverse=True)[1] for axis in ij.T)  # numbers below N: no pair overflows
     _, first, cell = np.unique(row * len(places) + column, return_index=True, return_inverse=True)
-    return ij[first], cell
+    return ij[first], cell.astype(np.intp, copy=False)
 
 
 def _with_neighbours(count: NDArray[Any], pairs: NDArray[np.intp]) -> NDArray[Any]:
     """Return for each cell its own count and those of the cells that it makes pairs with, shape (M,)."""
-    a, b = pairs
+    a, b = pairs.astype(np.intp, copy=False)
     return count + np.bincount(a, count[b], len(count)) + np.bincount(b, count[a], len(count))
 
 

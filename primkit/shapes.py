@@ -281,7 +281,8 @@ class Polygon:
         """Return the polygon turned by ``angle`` radians about its centroid, then shifted by ``offset``."""
         c, s = np.cos(angle), np.sin(angle)
         middle = self.centroid
-        turned = (self.vertices - middle) @ np.array([[c, s], [-s, c]])
+        x, y = (self.vertices - middle).T
+        turned = np.column_stack([x * c - y * s, x * s + y * c])  # no matrix product: its last bits differ by machine
         return Polygon(turned + middle + as_point(offset, "offset"))
 
     def to_shapely(self) -> shapely.Polygon:

@@ -83,7 +83,7 @@ class Steps:
         if labels is None or labels.shape != (len(points),) or labels.dtype.kind not in "iu":
             got = "nothing that is an array" if labels is None else f"{labels.dtype} of shape {labels.shape}"
             raise ValueError(f"segment must return a whole number for each of the {len(points)} points, got {got}")
-        numbered = np.full(len(labels), -1, dtype=np.int64)
+        numbered = np.full(len(labels), -1, dtype=np.intp)
         numbered[labels >= 0] = np.unique(labels[labels >= 0], return_inverse=True)[1]
         return numbered
 

@@ -24,7 +24,7 @@ from typing import Literal
 
 import numpy as np
 
-from .arguments import Floats, as_count, as_positive, as_rng, check_type, doubt, short
+from .arguments import Floats, as_count, as_positive, as_rng, check_type, doubt, limit, short
 from .palette import INK, KIND_COLORS, PALE
 from .shapes import PRIMITIVES, Circle, Kind, Polygon, Shape, turns_of
 from .show import census, thumbnail
@@ -44,6 +44,7 @@ LEAST_SIDE = 0.04
 
 TRIES_PER_SHAPE = 300  # a shape that found no room in this many tries will hardly find any
 TRIES_PER_WORLD = 20
+MOST_RANDOM = 1000  # shapes of a random world: each is measured to all before it
 
 Style = Literal["paper", "free", "any"]
 STYLES: tuple[Style, ...] = ("paper", "free", "any")
@@ -224,7 +225,7 @@ def random_world(
     ()
     """
     rng = as_rng(rng)
-    n = as_count(n, "n", least=0)
+    limit(n := as_count(n, "n", least=0), MOST_RANDOM, "n must be at most {}")
     gap, size = as_positive(gap, "gap", zero=True), as_positive(size, "size")
     if style not in STYLES:
         raise ValueError(f'style must be "paper", "free" or "any", got {style!r}')

@@ -181,7 +181,7 @@ def test_a_small_archive_that_unpacks_to_much_is_refused_before_it_is_unpacked(t
     assert len(content) < 10**5
     monkeypatch.setattr(zipfile.ZipFile, "open", lambda *_: pytest.fail("the archive was unpacked"))
     message = refusal(load_scans, written(tmp_path, content, "a.npz"))
-    assert message.startswith("a.npz: must unpack to at most 67,108,864 bytes, got 72,00")
+    assert message.startswith("a.npz: must unpack to at most 67,112,960 bytes, got 72,00")
 
 
 def test_a_damaged_archive_never_gives_other_scans(tmp_path):

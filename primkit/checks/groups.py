@@ -76,7 +76,7 @@ def _own_and_next(points: Floats, labels: Labels, itself: int = 1) -> tuple[Floa
     names, inverse = np.unique(labels, return_inverse=True)
     apart = _distances(points, points)
     sums = np.column_stack([apart[:, labels == name].sum(axis=1) for name in names])
-    sizes, rows = np.bincount(inverse), np.arange(len(points))
+    sizes, rows = np.bincount(inverse.astype(np.intp)), np.arange(len(points))
     own = sums[rows, inverse] / np.maximum(sizes[inverse] - itself, 1)
     others = sums / sizes
     others[rows, inverse] = np.inf
@@ -132,7 +132,7 @@ def _silhouette_cases(rng: np.random.Generator) -> Iterator[Args]:
         sizes = rng.integers(2, 8, k)
         if n % 4 == 0:
             sizes[rng.integers(k)] = 1
-        labels = np.repeat(np.arange(k), sizes)
+        labels = np.repeat(np.arange(k, dtype=np.intp), sizes.astype(np.intp))
         points = rng.uniform(-0.4, 0.4, (k, 2))[labels] + rng.normal(0.0, rng.choice([0.02, 0.2]), (len(labels), 2))
         order = rng.permutation(len(labels))
         yield points[order], labels[order]
@@ -217,7 +217,7 @@ def _to_centers(points: Floats, labels: Labels) -> float:
     rows = np.arange(len(points))
     a = apart[rows, inverse].copy()
     apart[rows, inverse] = np.inf
-    return _mean_of(a, apart.min(axis=1), np.bincount(inverse)[inverse] == 1)
+    return _mean_of(a, apart.min(axis=1), np.bincount(inverse.astype(np.intp))[inverse] == 1)
 
 
 assign_points = Check(

@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+import warnings
 from collections.abc import Callable, Iterable, Sequence
 from difflib import get_close_matches
 from functools import partial
@@ -81,10 +82,11 @@ def path(word: str) -> Path:
     return Path(word)
 
 
-def whole(word: str, least: int = 0) -> int:
+def whole(word: str, least: int = 0, most: int = 10**19) -> int:
     """Read a whole number."""
-    if not (word.isascii() and word.isdigit() and len(word) < 20 and int(word) >= least):
-        raise argparse.ArgumentTypeError(f"must be a whole number >= {least}, got {word!r}")
+    if not (word.isascii() and word.isdigit() and len(word) < 20 and least <= int(word) <= most):
+        rule = f"must be a whole number >= {least}" + (f" and at most {most:,}" if most < 10**19 else "")
+        raise argparse.ArgumentTypeError(f"{rule}, got {word!r}")
     return int(word)
 
 
@@ -113,9 +115,14 @@ def say(text: str) -> None:
 
 def exit_code(run: Callable[[], None]) -> int:
     """Run a command, and return its exit code: 0 done, 2 a sentence on stderr says what was wrong, 130 Ctrl-C."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:  # under pythonw, and after `>&-`: nobody listens
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115 - as long as Python runs
     try:
         try:
-            run()
+            with warnings.catch_warnings():
+                warnings.showwarning = partial(_note, warnings.showwarning)
+                run()
         finally:
             sys.stdout.flush()  # that nobody reads on is noticed here, not while Python shuts down
     except SystemExit as end:  # argparse's, after --help or a wrong value
@@ -125,6 +132,8 @@ def exit_code(run: Callable[[], None]) -> int:
         return 0
     except KeyboardInterrupt as stop:
         return _complain(str(stop) or "stopped by Ctrl-C", 130)
+    except MemoryError:
+        return _complain("there is not enough memory for this: is a map, a size or a number too large?")
     except OSError as error:
         # Sentences from formats stand alone; the system's own come in parts.
         return _complain(f"{error.filename}: {error.strerror}" if error.filename else str(error))
@@ -134,6 +143,16 @@ def exit_code(run: Callable[[], None]) -> int:
             sentence = sentence.replace(name, option)
         return _complain(f"{sentence}{''.join(f' ({note})' for note in getattr(error, '__notes__', ()))}")
     return 0
+
+
+def _note(otherwise: Callable[..., None], message: Warning | str, category: type[Warning], *place: Any) -> None:
+    """Print what is likely wrong as a sentence; other warnings as usual."""
+    from ..arguments import LikelyWrong
+
+    if issubclass(category, LikelyWrong):
+        print(f"primkit: {message}", file=sys.stderr)
+    else:
+        otherwise(message, category, *place)
 
 
 def _complain(sentence: str, code: int = 2) -> int:

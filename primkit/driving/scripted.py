@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from ..arguments import Floats, as_count, as_rng, check_type
 from ..formats import Route, paper_suite, scripted_drives
-from ..robot import AXLE, FASTEST, PERIOD, WHEEL, advance, clearance, moved, start_pose
+from ..robot import AXLE, FASTEST, PERIOD, WHEEL, advance, check_places, clearance, moved, start_pose
 from ..shapes import Shape
 from ..world import World
 from .ways import tighten, trace
@@ -186,6 +186,7 @@ class _Board:
         from scipy.sparse import coo_array
         from scipy.spatial import cKDTree
 
+        check_places(world.size, WAY_GRID**2)
         half = np.floor(world.size / 2 / WAY_GRID)
         lines = np.arange(-half, half + 1) * WAY_GRID
         places = np.stack(np.meshgrid(lines, lines, indexing="ij"), axis=-1).reshape(-1, 2)

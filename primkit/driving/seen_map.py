@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from ..arguments import Bools, Floats
 from ..lidar import Scans
 from ..measure import Detection
-from ..robot import BODY
+from ..robot import BODY, check_places
 from ..seen import is_seen
 from ..shapes import Shape
 
@@ -43,6 +43,7 @@ class SeenMap:
     """What one robot knows of its board; it knows where the board, ``size`` metres wide, ends."""
 
     def __init__(self, size: float) -> None:
+        check_places(size, SQUARE**2)
         self.size = size
         n = max(1, int(np.ceil(size / SQUARE - 1e-9)))
         lines = (np.arange(n) + 0.5) * SQUARE - size / 2
@@ -61,7 +62,7 @@ class SeenMap:
 
     def index(self, points: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Return the squares that points lie in, two arrays of shape (...); beyond the edge, the last ones."""
-        cells = np.floor((points + self.size / 2) / SQUARE).astype(np.int64).clip(0, len(self.free) - 1)
+        cells = np.floor((points + self.size / 2) / SQUARE).astype(np.intp).clip(0, len(self.free) - 1)
         return cells[..., 0], cells[..., 1]
 
     def add(self, scans: Scans, range_min: float, range_max: float) -> None:

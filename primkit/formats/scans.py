@@ -123,7 +123,7 @@ def _arrays_in(data: bytes) -> dict[str, NDArray[Any]]:
         if f"{field}.npy" not in archive.namelist():
             raise ValueError(f"must hold the arrays {', '.join(SCAN_SHAPES)}, got none called {field}")
     told = sum(archive.getinfo(f"{field}.npy").file_size for field in SCAN_SHAPES)
-    limit(told - HEADS, SCANS_LIMIT, "must unpack to at most {} bytes")
+    limit(told, SCANS_LIMIT + HEADS, "must unpack to at most {} bytes")
     for field in SCAN_SHAPES:
         with _refusing_damage():
             arrays[field] = _array_of(unpacked(archive, f"{field}.npy", SCANS_LIMIT + HEADS))

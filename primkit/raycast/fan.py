@@ -56,6 +56,6 @@ class Fan:
         """Return the number of the first beam at or after each bearing."""
         bearing = bearing - self.start
         if self.even:
-            return np.ceil(bearing / self.step).astype(np.int64)
+            return np.ceil(bearing / self.step).astype(np.intp)
         turns = np.floor(bearing / TURN)
-        return self.size * turns.astype(np.int64) + np.searchsorted(self.offsets, bearing - TURN * turns)
+        return self.size * turns.astype(np.intp) + np.searchsorted(self.offsets, bearing - TURN * turns)

@@ -150,9 +150,9 @@ def _hits_on_sides(scene: _Scene, fan: Fan, here: tuple[Floats, ...], pose: Ints
     """Return all hits on K pairs' polygons, with S sides in all; the steps are those of the module's derivation."""
     (x, y, heading), polygon = here, shape - scene.n_circles
     # 1. The sides that face the robot: their right ends, and the ways d to their left ends, shape (S,).
-    n_sides = scene.n_sides.take(polygon)
+    n_sides = scene.n_sides.take(polygon).astype(np.intp, copy=False)
     begin = n_sides.cumsum() - n_sides
-    own, side = pose.repeat(n_sides), (scene.first.take(polygon) - begin).repeat(n_sides)
+    own, side = np.repeat(pose, n_sides), np.repeat(scene.first.take(polygon) - begin, n_sides)
     side += np.arange(len(side))
     right_x, right_y = scene.right_x.take(side) - x.take(own), scene.right_y.take(side) - y.take(own)
     dx, dy, length = scene.way_x.take(side), scene.way_y.take(side), scene.length.take(side)

@@ -62,7 +62,7 @@ class Cells:
         cell, shape = self._touched(x, y, far)
         self.shapes = shape[np.argsort(cell, kind="stable")]
         # One more cell, without shapes, stands for all that lies outside.
-        self.count = np.bincount(cell, minlength=self.columns * self.rows + 1)
+        self.count = np.bincount(cell.astype(np.intp, copy=False), minlength=self.columns * self.rows + 1)
         self.begin = np.cumsum(self.count) - self.count
         self.most = int(self.count.max())
 
@@ -83,7 +83,7 @@ class Cells:
         return (i * self.rows + j)[touched], shape[touched]
 
     def _index(self, offset: Floats) -> Ints:
-        return np.floor(offset / self.edge).astype(np.int64)
+        return np.floor(offset / self.edge).astype(np.intp)
 
     def candidates(self, x: Floats, y: Floats) -> tuple[Ints, Ints]:
         """Return each (position, shape) with the shape known to the position's cell."""
@@ -100,7 +100,7 @@ def runs(first: Ints, length: Ints) -> tuple[Ints, Ints]:
     >>> [index.tolist() for index in runs(np.array([10, 7, 20]), np.array([2, 0, 3]))]
     [[0, 0, 2, 2, 2], [10, 11, 20, 21, 22]]
     """
-    run = np.arange(len(length)).repeat(length)
+    run = np.repeat(np.arange(len(length)), length.astype(np.intp, copy=False))  # on 32 bits, no count has 64
     before = length.cumsum() - length  # numbers in all runs before this one
     number = np.arange(len(run))
     number += (first - before).take(run)

@@ -238,7 +238,7 @@ def _distances(points: Floats, figure: Circle | Outlines, spread: float) -> tupl
         return figure.signed_distance(points), len(points)
     r = figure.distances(points)[0]
     distance = r.max(axis=1)
-    own = np.bincount(r.argmax(axis=1)[np.abs(distance) <= SIGMAS * spread], minlength=r.shape[1])
+    own = np.bincount(r.argmax(axis=1)[np.abs(distance) <= SIGMAS * spread].astype(np.intp), minlength=r.shape[1])
     return distance, int(own.min())
 
 
