@@ -1,5 +1,6 @@
 """What holds for all tests: the same examples on every run, pictures without a window, and threads that wait asleep."""
 
+import importlib.util
 import os
 from pathlib import Path
 
@@ -11,6 +12,8 @@ import matplotlib
 import numpy as np
 import pytest
 from hypothesis import settings
+
+from tests.helpers import WAITS
 
 # The same examples on every run and every machine; no time limit, which a busy machine would break.
 settings.register_profile("primkit", derandomize=True, deadline=None, database=None)
@@ -38,10 +41,14 @@ def screenshots(request):
     return folder
 
 
+def pytest_report_header():
+    if importlib.util.find_spec("playwright") is None:
+        return "playwright is absent: the lessons are not tried in a browser"
+    return None
+
+
 def pytest_terminal_summary(terminalreporter):
     """Show how long a key press takes to become a picture; tests tell it, in whatever process they run."""
-    from tests.browser.lab import WAITS
-
     reports = [*terminalreporter.getreports("passed"), *terminalreporter.getreports("failed")]
     waits = [value for report in reports for name, value in report.user_properties if name == WAITS]
     if not waits:

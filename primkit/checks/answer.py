@@ -68,6 +68,9 @@ class Answer:
     def __repr__(self) -> str:
         return f"{VERDICT_SIGNS[self.verdict]} {self.verdict}: {self.says}"
 
+    def __str__(self) -> str:
+        return f"{self.verdict}: {self.says}"  # without the sign, which many a Windows console cannot print
+
     def _repr_html_(self) -> str:
         color, words = VERDICT_COLORS[self.verdict], escape(self.says).replace("\n", "<br>")
         return (

@@ -57,14 +57,18 @@ def accuracy_options(parser: Parser) -> None:
     """Add the options of ``primkit accuracy``."""
     text = "any of suite, noise, shapes, scans, spurious, gap, remedies, partial"
     parser.option("--sweeps", "NAME", str, None, text, nargs="+", shown="all")
-    parser.option("--maps", "N", partial(whole, least=1, most=100_000), 100, "number of maps for each line, and of drives")
+    parser.option(
+        "--maps", "N", partial(whole, least=1, most=100_000), 100, "number of maps for each line, and of drives"
+    )
     _many_options(parser, "maps and noise", "accuracy.csv, accuracy.png and partial.csv")
 
 
 def _many_options(parser: Parser, seeded: str, files: str) -> None:
     parser.choice("--settings", ("both", "robust", "paper"), "the method: ours, as published, or both")
     parser.option("--seed", "S", whole, 0, f"seed of {seeded}, a whole number")
-    parser.option("--jobs", "N", partial(whole, least=1, most=1000), None, "number of processes", shown="one on each core")
+    parser.option(
+        "--jobs", "N", partial(whole, least=1, most=1000), None, "number of processes", shown="one on each core"
+    )
     parser.option("--scheduler", "ADDRESS", str, None, "dask cluster that does the work", shown="this machine")
     parser.option("--out", "DIR", path, Path("out"), f"folder for the journal, and {files}")
 

@@ -11,6 +11,7 @@ them), ``submitted/``, ``autograded/``, ``feedback/``, ``gradebook.db`` and ``re
 from __future__ import annotations
 
 import csv
+import io
 import re
 import secrets
 import shutil
@@ -19,6 +20,7 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from ..arguments import short
+from ..formats.files import bounded_read
 from .personal import SALT_LETTERS
 
 # Where the assignments lie in a clone of the project; a wheel holds none.
@@ -141,8 +143,8 @@ class Course:
             raise ValueError(
                 f"{STUDENTS} is missing in {self.root}: a table with the columns {', '.join(STUDENT_COLUMNS)}"
             )
-        with open(path, encoding="utf-8-sig", newline="") as file:
-            table = csv.DictReader(file)
+        try:
+            table = csv.DictReader(io.StringIO(bounded_read(path).decode("utf-8-sig"), newline=""))
             if "id" not in (table.fieldnames or ()):
                 wrong = ",".join(table.fieldnames or ())
                 semicolons = " (saved with semicolons: choose CSV with commas)" if ";" in wrong else ""
@@ -150,6 +152,10 @@ class Course:
                     f"{STUDENTS} must begin with the line {','.join(STUDENT_COLUMNS)}, got {short(wrong)}{semicolons}"
                 )
             lines = [(table.line_num, row["id"]) for row in table]
+        except UnicodeDecodeError:
+            raise ValueError(f"{STUDENTS} must be text in UTF-8: choose CSV UTF-8 where you save it") from None
+        except csv.Error as error:
+            raise ValueError(f"{STUDENTS} must be a table with commas, got a line that is none: {error}") from None
         ids = [name for _, name in lines]
         for line, name in lines:
             if not name or not ID.fullmatch(name):

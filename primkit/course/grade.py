@@ -14,15 +14,20 @@ import json
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+from ..arguments import short
+from ..formats.files import bounded_read, naming, write_atomically
+from ..formats.values import parsed
 from .course import SANITIZE_STEPS, Course
 from .handed_in import Fault, file_faults, strangers, tree_hash
 from .handing_back import hand_back, unmarked_answers
 from .moved import refuse_old_names
 from .running import nbgrader
 
+FAULT_FIELDS = {field.name for field in fields(Fault)}
 SUBMISSION_SECONDS = 1800.0  # for one submission: far more than its cells' own limits come to
 
 
@@ -116,6 +121,20 @@ def _read_faults(course: Course, name: str, student: str) -> Iterator[Fault]:
             yield Fault(student, fault["cell"], fault["name"], fault["says"])
 
 
+def _entries_in(path: Path) -> dict[str, Any]:
+    """Return what a journal holds, or say in one sentence that it is none."""
+    with naming(path.name):
+        told = parsed(bounded_read(path))
+        for entry in told.values() if isinstance(told, dict) else [told]:
+            if not isinstance(entry, dict) or {*entry} != {"hash", "graded", "faults"}:
+                rule = "must hold the hash, the verdict and the faults of each student"
+                raise ValueError(f"{rule}, got {short(entry)}: put it away, and grade again")
+            faults = entry["faults"] if isinstance(entry["faults"], list) else [entry["faults"]]
+            if any(not isinstance(fault, dict) or {*fault} != FAULT_FIELDS for fault in faults):
+                raise ValueError(f"must hold faults with {', '.join(sorted(FAULT_FIELDS))}, got {short(faults)}")
+        return dict(told)
+
+
 class Journal:
     """What has been graded, in a file that is written after every student."""
 
@@ -123,7 +142,7 @@ class Journal:
         self.path: Path = course.reports(name) / "graded.json"
         self.entries: dict[str, Any] = {}
         if self.path.is_file():
-            self.entries = json.loads(self.path.read_text(encoding="utf-8"))
+            self.entries = _entries_in(self.path)
 
     def knows(self, student: str, hashed: str) -> bool:
         """Tell whether these very files were graded."""
@@ -134,9 +153,7 @@ class Journal:
         """Write down what came out for a student."""
         told = [fault.data() for fault in faults]
         self.entries[student] = {"hash": hashed, "graded": graded, "faults": told}
-        new = self.path.with_suffix(".new")
-        new.write_text(json.dumps(self.entries, indent=1, sort_keys=True), encoding="utf-8")
-        new.replace(self.path)
+        write_atomically(self.path, json.dumps(self.entries, indent=1, sort_keys=True))
 
     def failed(self) -> dict[str, Any]:
         """Return the entries of those that could not be graded."""

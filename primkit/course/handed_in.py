@@ -11,9 +11,10 @@ import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from ..arguments import short
 from .course import ID, STUDENTS, Course
 
-MOST_MEGABYTES = 50  # megabytes of a notebook: more is output that never ended
+MOST_MEGABYTES = 16  # of a notebook: more is output that never ended
 
 
 @dataclass(frozen=True)
@@ -72,10 +73,12 @@ def _not_a_notebook(path: Path) -> str | None:
     except UnicodeDecodeError:
         return "is not text"
     except (ValueError, RecursionError) as error:
-        return f"is not JSON: {error}"
+        return f"is not JSON: {short(str(error))[1:-1]}"
     if not isinstance(data, dict) or not isinstance(data.get("cells"), list):
         return "is JSON, but has no list of cells"
-    if not any("nbgrader" in (cell.get("metadata") or {}) for cell in data["cells"] if isinstance(cell, dict)):
+    if any(not isinstance(cell, dict) or not isinstance(cell.get("metadata", {}), dict) for cell in data["cells"]):
+        return "is JSON, but has cells that are none"
+    if not any("nbgrader" in cell.get("metadata", {}) for cell in data["cells"]):
         return "holds no cell of the problem set: was another notebook handed in, or its cells copied to a new one?"
     return None
 

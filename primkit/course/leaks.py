@@ -26,8 +26,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from ..formats.files import naming, open_archive, unpacked
 from .course import SALT
 
+MOST_UNPACKED = 2**28  # bytes of one file in an archive
 PIECE_TOKENS = 16  # about a line
 LEAST_TOKENS = 24  # of a solution that is looked for
 # Of the pieces. The grader's functions are many and small, and some of their lines are those of any geometry.
@@ -211,9 +213,9 @@ def _texts(path: Path) -> Iterator[tuple[str, str, str]]:
 
 def _of_file(name: str, data: bytes) -> Iterator[tuple[str, str, str]]:
     if zipfile.is_zipfile(io.BytesIO(data)):
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        with naming(name), open_archive(data) as archive:
             for member in archive.namelist():
-                yield from _of_file(f"{name}/{member}", archive.read(member))
+                yield from _of_file(f"{name}/{member}", unpacked(archive, member, MOST_UNPACKED))
         return
     text = data.decode("utf-8", "replace")  # in a binary file, words can still be found
     if name.endswith(".ipynb"):

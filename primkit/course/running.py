@@ -11,9 +11,9 @@ import re
 import subprocess
 import sys
 import sysconfig
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from .course import Course
 
@@ -37,25 +37,24 @@ class Done:
 def nbgrader(course: Course, *words: str, log: Path | None = None, seconds: float | None = None) -> Done:
     """Run a command of nbgrader's in the course folder."""
     command = [sys.executable, "-m", "nbgrader", *words]
-    try:
-        done = subprocess.run(
-            command,
-            cwd=course.root,
-            env=_environment(course),
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            encoding="utf-8",
-            errors="replace",
-            timeout=seconds,
-            check=False,
-        )
-        result = Done(done.returncode, done.stdout)
-    except subprocess.TimeoutExpired as stop:
-        told: Any = stop.stdout or b""  # bytes or text: it depends on the system
-        text = told.decode("utf-8", "replace") if isinstance(told, bytes) else told
-        result = Done(1, f"{text}\nTimeoutError: nbgrader was stopped after {seconds or 0:g} s")
+    # Into a file, not a pipe: a pipe stays open for as long as anything lives that a submission has started.
+    with tempfile.TemporaryFile() as said:
+        try:
+            done = subprocess.run(
+                command,
+                cwd=course.root,
+                env=_environment(course),
+                stdin=subprocess.DEVNULL,
+                stdout=said,
+                stderr=subprocess.STDOUT,
+                timeout=seconds,
+                check=False,
+            )
+            code, last = done.returncode, ""
+        except subprocess.TimeoutExpired:
+            code, last = 1, f"\nTimeoutError: nbgrader was stopped after {seconds or 0:g} s"
+        said.seek(0)
+        result = Done(code, said.read().decode("utf-8", "replace").replace("\r\n", "\n") + last)
     if log is not None:
         log.parent.mkdir(parents=True, exist_ok=True)
         log.write_text(f"$ nbgrader {' '.join(words)}\n{result.log}", encoding="utf-8")

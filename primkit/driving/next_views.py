@@ -81,7 +81,8 @@ def _shown(
     rim : int
         Squares around the map: beams may leave the board, and nothing is shown there.
     """
-    steps = np.arange(lidar.range_min, lidar.range_max, SQUARE) + SQUARE / 2
+    across = max(1.5 * len(worth) * SQUARE, lidar.range_min + SQUARE)  # beyond the board there is nothing to see
+    steps = np.arange(lidar.range_min, min(lidar.range_max, across), SQUARE) + SQUARE / 2
     bearings = lidar.angles[::BEAM_STRIDE]
     i, j = np.rint(np.stack([np.cos(bearings), np.sin(bearings)])[:, :, None] * steps / SQUARE).astype(np.int64)
     rim = int(steps[-1] / SQUARE) + 1

@@ -50,8 +50,13 @@ class AtOnce(Executor):
 
 
 def beside() -> Executor:
-    """Return an executor with a thread of its own, in which one thing is done after the other."""
-    return ThreadPoolExecutor(max_workers=1, thread_name_prefix="primkit-finder")
+    """Return an executor with a thread of its own, one thing after the other; without threads, one that does it now."""
+    executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix="primkit-finder")
+    try:
+        executor.submit(int)
+    except RuntimeError:  # a browser's Python cannot start one
+        return AtOnce()
+    return executor
 
 
 @dataclass(frozen=True, eq=False)

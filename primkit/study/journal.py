@@ -19,7 +19,9 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from ..formats import StrPath
+from ..arguments import limit
+from ..formats.files import LINE_LIMIT, StrPath, append_whole, opened
+from ..formats.values import parsed
 from .row import Row, Score
 
 JOURNAL = "journal.jsonl"
@@ -56,23 +58,21 @@ def open_journal(folder: StrPath | None) -> Iterator[tuple[dict[str, Row], Binar
     if folder is None:
         yield {}, None
         return
-    with (make_folder(folder) / JOURNAL).open("a+b") as file:
+    with opened(make_folder(folder) / JOURNAL, "a+b") as file:
         file.seek(0)
         yield rows_in(file), file
 
 
 def rows_in(file: BinaryIO) -> dict[str, Row]:
     """Return a journal's rows by key; a last line without an end, left by a killed process, is cut off."""
-    rows, whole = {}, 0
-    for number, line in enumerate(file, start=1):
-        if not line.endswith(b"\n"):
-            file.truncate(whole)
-            break
-        whole += len(line)
+    data, rows = file.read(), {}
+    file.truncate(whole := data.rfind(b"\n") + 1)
+    for number, line in enumerate(data[:whole].splitlines(), start=1):
         try:
-            entry = json.loads(line)
+            limit(len(line), LINE_LIMIT, "must be at most {} bytes")
+            entry = parsed(line)
             rows[json.dumps(entry["experiment"], sort_keys=True)] = _as_row(entry["row"])
-        except (ValueError, TypeError, KeyError):
+        except (ValueError, TypeError, KeyError, RecursionError):
             raise ValueError(f"{JOURNAL}, line {number}: must be a row of a study, got {line[:40]!r}") from None
     file.seek(0, os.SEEK_END)
     return rows
@@ -86,8 +86,8 @@ def n_rows(path: Path) -> int:
 def append(file: BinaryIO | None, row: Row, key: str) -> None:
     """Write one row, and hand it to the system: a killed process loses nothing of it."""
     if file is not None:
-        file.write(json.dumps({"experiment": json.loads(key), "row": asdict(row)}).encode() + b"\n")
-        file.flush()
+        line = json.dumps({"experiment": json.loads(key), "row": asdict(row)})
+        append_whole(file, line.encode() + b"\n", Path(JOURNAL))
 
 
 def _as_row(told: dict[str, Any]) -> Row:

@@ -21,7 +21,7 @@ What it stops, and what it cannot:
   failed and goes on with the next one.
 
 On the main thread of Linux and macOS the system's alarm interrupts; on Windows and on other threads a second thread
-does.
+does. Where Python has neither, as in a browser, nothing is stopped: there an endless loop ends with its page.
 """
 
 from __future__ import annotations
@@ -63,9 +63,11 @@ class TimeLimit:
         main = threading.current_thread() is threading.main_thread()
         self._stop = self._alarm() if main and hasattr(signal, "setitimer") else self._second_thread()
 
-    def __exit__(self, *_error: object) -> None:
+    def __exit__(self, _kind: object, error: object, _trace: object) -> None:
         """Stop the clock."""
         self._stop()
+        if isinstance(error, OutOfTime) and not error.args:  # a second thread can only send the bare class
+            error.args = self._over().args
 
     def _over(self) -> OutOfTime:
         return OutOfTime(f"stopped after {self.seconds:g} s")
@@ -127,7 +129,10 @@ class TimeLimit:
                     pass
 
         watcher = threading.Thread(target=watch, daemon=True)
-        watcher.start()
+        try:
+            watcher.start()
+        except RuntimeError:  # a browser's Python has no threads: nothing there can stop a loop
+            return lambda: None
         return stop
 
 

@@ -20,6 +20,7 @@ from typing import Any
 
 from ...checks.answer import VERDICT_COLORS, VERDICT_SIGNS, Answer
 
+PLAIN = str.maketrans("✓✗○", "+x-")  # many a Windows console cannot print the signs
 MIME = "application/vnd.primkit.mark+json"
 
 
@@ -96,6 +97,9 @@ class Mark:
             first = f": {told[0]}" if told else ""
             lines.append(f"{VERDICT_SIGNS[row.answer.verdict]} {row.points:g} of {row.of:g}  {row.says}{first}{off}")
         return "\n".join(lines)
+
+    def __str__(self) -> str:
+        return repr(self).translate(PLAIN)
 
     def _repr_html_(self) -> str:
         head = "".join(
