@@ -296,7 +296,7 @@ def test_cast_rays_failure(angles, range_max, sentence):
 
 POSES_FAILURES = {
     "without a heading": ([(0, 0)], "poses must have shape (P, 3): x, y, heading; got shape (1, 2)"),
-    "None": (None, "poses must have shape (P, 3): x, y, heading; got shape ()"),
+    "None": (None, "poses must be numbers in an array of shape (P, 3): x, y, heading"),
     "NaN": ([(0, 0, NAN)], "poses must be finite, got (0.0, 0.0, nan) in row 0"),
     "text": ("here", "poses must be numbers in an array of shape (P, 3): x, y, heading"),
 }

@@ -142,7 +142,7 @@ FIT_FAILURES = {
     "infinite": ([(INF, 0)], "points must be finite, got (inf, 0.0) in row 0"),
     "three columns": (np.zeros((5, 3)), "points must have shape (N, 2), got shape (5, 3)"),
     "two rows": (np.zeros((2, 5)), "points must have shape (N, 2), got shape (2, 5)"),
-    "nothing": (None, "points must have shape (N, 2), got shape ()"),
+    "nothing": (None, "points must be numbers in an array of shape (N, 2), got None"),
 }
 
 

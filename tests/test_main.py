@@ -182,6 +182,7 @@ def test_map_of_a_file_with_the_published_method(capsys):
     assert load_world("out/truth.geojson") == load_world("maps/two.json")
 
 
+@pytest.mark.filterwarnings("ignore::primkit.arguments.LikelyWrong")
 @pytest.mark.parametrize("words", [["--shapes", "0"], ["--map", "wall.geojson"]], ids=["empty board", "out of sight"])
 def test_map_where_nothing_is_to_be_found(words, capsys):
     far = Polygon([(0.9, 0.9), (1.0, 0.9), (1.0, 1.0)])

@@ -87,6 +87,7 @@ SKIPPED = {  # shapes, way-points inside
 }
 
 
+@pytest.mark.filterwarnings("ignore::primkit.arguments.LikelyWrong")
 @pytest.mark.parametrize(("shapes", "inside"), SKIPPED.values(), ids=SKIPPED)
 def test_waypoints_inside_shapes_are_skipped(shapes, inside):
     world = World(shapes)
@@ -130,6 +131,7 @@ def test_the_board_of_the_world_counts():
     assert len(teleport_poses(World(size=2.0))) == len(paper_waypoints("2.0"))
 
 
+@pytest.mark.filterwarnings("ignore::primkit.arguments.LikelyWrong")
 def test_inside_shape_by_hand():
     world = World([Circle((0, 0), 0.5), Polygon([(1, 0), (2, 0), (2, 1), (1, 1)])])
     poses = np.array([(0, 0, 1), (0.5, 0, 2), (0.51, 0, 3), (1.5, 0.5, 4), (1, 1, 5), (1, 0.5, 6), (2.5, 0.5, 7)])

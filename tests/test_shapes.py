@@ -293,8 +293,8 @@ POLYGON_FAILURES = {
     "a flat list": ([0, 0, 1, 0, 0, 1], "vertices must have shape (N, 2), got shape (6,)"),
     "two rings": ([SQUARE, SQUARE], "vertices must have shape (N, 2), got shape (2, 4, 2)"),
     "text": ("square", "vertices must be numbers in an array of shape (N, 2), got 'square'"),
-    "None": (None, "vertices must have shape (N, 2), got shape ()"),
-    "a truth value": (True, "vertices must have shape (N, 2), got shape ()"),
+    "None": (None, "vertices must be numbers in an array of shape (N, 2), got None"),
+    "a truth value": (True, "vertices must be numbers in an array of shape (N, 2), got True"),
 }
 
 
@@ -678,7 +678,6 @@ def test_shown(shape, text):
 POINTS = {
     "list of tuples": ([(1, 2), (3, 4)], [[1.0, 2.0], [3.0, 4.0]]),
     "whole numbers": (np.array([[1, 2]], dtype=np.uint8), [[1.0, 2.0]]),
-    "truth values count as numbers": ([(True, False)], [[1.0, 0.0]]),
     "empty list": ([], []),
     "empty tuple": ((), []),
     "empty array": (np.empty((0, 2)), []),
@@ -695,8 +694,9 @@ def test_as_points(points, expected):
 POINTS_FAILURES = {
     "NaN": ([(0, 0), (NAN, 1)], "points must be finite, got (nan, 1.0) in row 1"),
     "infinity, the first bad row is named": ([(0, INF), (NAN, 1)], "points must be finite, got (0.0, inf) in row 0"),
-    "None among numbers": ([(None, 1)], "points must be finite, got (nan, 1.0) in row 0"),
-    "None": (None, "points must have shape (N, 2), got shape ()"),
+    "None among numbers": ([(None, 1)], "points must be numbers in an array of shape (N, 2), got [(None, 1)]"),
+    "truth values": ([(True, False)], "points must be numbers in an array of shape (N, 2), got [(True, False)]"),
+    "None": (None, "points must be numbers in an array of shape (N, 2), got None"),
     "one point without its row": ((1, 2), "points must have shape (N, 2), got shape (2,)"),
     "columns for rows": (np.zeros((2, 7)), "points must have shape (N, 2), got shape (2, 7)"),
     "three axes": (np.zeros((0, 2, 2)), "points must have shape (N, 2), got shape (0, 2, 2)"),
@@ -752,7 +752,7 @@ def test_as_poses(poses, expected):
 POSES_FAILURES = {
     "without a heading": ([(1, 2)], "poses must have shape (P, 3): x, y, heading; got shape (1, 2)"),
     "flat": ((1, 2, 3, 4, 5, 6), "poses must have shape (P, 3): x, y, heading; got shape (6,)"),
-    "None": (None, "poses must have shape (P, 3): x, y, heading; got shape ()"),
+    "None": (None, "poses must be numbers in an array of shape (P, 3): x, y, heading"),
     "NaN": ([(0, 0, 0), (0, 0, NAN)], "poses must be finite, got (0.0, 0.0, nan) in row 1"),
     "infinity": ((INF, 0, 0), "poses must be finite, got (inf, 0.0, 0.0) in row 0"),
     "text": ("abc", "poses must be numbers in an array of shape (P, 3): x, y, heading"),

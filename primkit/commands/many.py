@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .words import Parser, path, say, whole
+from .words import Parser, count, meanwhile, path, say, whole
 
 if TYPE_CHECKING:
     from ..study import Row
@@ -101,6 +101,7 @@ def study(arguments: argparse.Namespace) -> None:
     journal = out / JOURNAL
     if arguments.fresh:
         journal.unlink(missing_ok=True)
+    meanwhile(f"{count(len(maps), 'map')} with {' and '.join(wanted)}; finished ones are kept in {journal}")
     before, rows = n_rows(journal), []
     with _workers(arguments) as jobs:
         for movement in ("automatic", "manual"):
@@ -133,10 +134,11 @@ def _say_seen(rows: list[Row], out: Path) -> str:
 def accuracy(arguments: argparse.Namespace) -> None:
     """Change one thing at a time; print how right each method is, and write all numbers and a figure."""
     from ..plots import PANELS, plot_accuracy, save_figure
-    from ..study import METHODS, accuracy_study, make_folder
+    from ..study import JOURNAL, METHODS, accuracy_study, make_folder
 
     wanted = {name: method for name, method in METHODS.items() if arguments.settings in ("both", name.lower())}
     out, made = make_folder(arguments.out), []
+    meanwhile(f"{count(arguments.maps, 'map')} for each line; finished ones are kept in {out / JOURNAL}")
     with _workers(arguments) as jobs:
         for table in accuracy_study(
             arguments.sweeps, arguments.maps, out, settings=wanted, seed=arguments.seed, jobs=jobs

@@ -113,6 +113,12 @@ def say(text: str) -> None:
     print(text.encode(encoding, "backslashreplace").decode(encoding))
 
 
+def meanwhile(text: str) -> None:
+    """Tell who waits at a terminal what takes more than two seconds from now on."""
+    if sys.stderr.isatty():
+        print(f"primkit: {text}", file=sys.stderr)
+
+
 def exit_code(run: Callable[[], None]) -> int:
     """Run a command, and return its exit code: 0 done, 2 a sentence on stderr says what was wrong, 130 Ctrl-C."""
     for name in ("stdout", "stderr"):

@@ -58,6 +58,7 @@ def grade(
     if not (course.root / "release" / name).is_dir():
         raise ValueError(f"{name} was not released: run `primkit teach release {name}` first, for nbgrader needs it")
     refuse_old_names(course, name)
+    say(f"nbgrader runs {len(students)} submission{'s' * (len(students) != 1)}, each for some seconds")
     folders = [course.root / "submitted" / student / name for student in everybody]
     before, start = tree_hash(*folders), time.monotonic()
     journal = Journal(course, name)

@@ -27,6 +27,7 @@ def release(course: Course, name: str, *, say: Callable[[str], None]) -> None:
     """
     refuse_old_names(course, name, released=False)
     students = course.students()
+    say(f"nbgrader makes release/{name}: this takes some seconds")
     if students:
         _check(nbgrader(course, "db", "student", "import", STUDENTS), "the list of students was refused")
     _check(nbgrader(course, "generate_assignment", name, "--force"), f"nbgrader could not release {name}")

@@ -149,8 +149,10 @@ def bounded_read(path: Path, most: int = TEXT_LIMIT) -> bytes:
         with naming(path.name):
             limit(size, most, "must be at most {} bytes")
             with path.open("rb") as file:
-                data = file.read(most + 1)
-            limit(len(data), most, "must be at most {} bytes")  # one that grows, or that has no size
+                data = file.read(size + 1)
+                if len(data) > size:  # one that grows, or that has no size
+                    data += file.read(most - size)
+            limit(len(data), most, "must be at most {} bytes")
             return data
 
 

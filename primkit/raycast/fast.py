@@ -114,7 +114,7 @@ def cast(
     A beam whose nearest hit lies outside the limits, both included, reads ``inf``.
     """
     limit(
-        len(poses) * len(angles), MOST_RANGES, "a scan must have at most {} ranges", "scan_blocks takes a few at a time"
+        len(poses) * len(angles), MOST_RANGES, "a scan must have at most {} ranges", "scan_blocks takes a few at once"
     )
     scene, fan = _scene(world, float(range_max) + ROUNDING), _fan(angles.tobytes())
     ranges, inside = np.empty((len(poses), fan.size)), np.zeros(len(poses), dtype=bool)

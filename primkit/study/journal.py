@@ -11,6 +11,7 @@ Source: the form is JSON Lines, jsonlines.org.
 
 from __future__ import annotations
 
+import io
 import json
 import os
 from collections.abc import Iterator
@@ -67,7 +68,7 @@ def rows_in(file: BinaryIO) -> dict[str, Row]:
     """Return a journal's rows by key; a last line without an end, left by a killed process, is cut off."""
     data, rows = file.read(), {}
     file.truncate(whole := data.rfind(b"\n") + 1)
-    for number, line in enumerate(data[:whole].splitlines(), start=1):
+    for number, line in enumerate(io.BytesIO(data[:whole]), start=1):
         try:
             limit(len(line), LINE_LIMIT, "must be at most {} bytes")
             entry = parsed(line)
