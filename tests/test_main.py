@@ -418,7 +418,7 @@ REFUSED = {
     ),
     "no jobs": (
         "study --jobs 0",
-        f"primkit study: argument --jobs: must be a whole number >= 1, got '0'{SEE['study']}",
+        f"primkit study: argument --jobs: must be a whole number >= 1 and at most 1,000, got '0'{SEE['study']}",
     ),
     "a folder without maps": ("study --maps empty", "primkit: empty: must hold maps (.geojson or .json), got none"),
     "no such folder": (
