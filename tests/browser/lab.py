@@ -16,8 +16,6 @@ from urllib.request import urlopen
 
 import pytest
 
-from tests.helpers import WAITS
-
 from .panel import Panel, panels
 
 ROOT = Path(__file__).resolve().parents[2]
