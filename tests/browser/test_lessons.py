@@ -11,7 +11,9 @@ from functools import partial
 import numpy as np
 import pytest
 
-from .lab import LESSONS, ROOT, WAITS, opened
+from tests.helpers import WAITS
+
+from .lab import LESSONS, ROOT, opened
 
 WIDE, NARROW = 1280, 390  # px: a laptop, and a phone
 PRESSES = 24  # measured key presses for each lesson

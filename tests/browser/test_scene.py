@@ -5,7 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from .lab import TOKEN, WAITS, enter, opened
+from tests.helpers import WAITS
+
+from .lab import TOKEN, enter, opened
 
 NAME = "scene"
 CELLS = [
