@@ -14,6 +14,7 @@ from __future__ import annotations
 import reprlib
 import warnings
 from collections.abc import Iterable
+from contextlib import suppress
 from numbers import Number
 from typing import Any
 
@@ -59,10 +60,7 @@ def as_points(points: ArrayLike | Iterable[Any], name: str = "points") -> Floats
     """
     if hasattr(points, "points"):  # a Grid or Scans, handed in whole
         raise ValueError(f"{name} must be an (N, 2) array, got a {type(points).__name__}; did you mean its points()?")
-    try:
-        array = as_floats(points, name)
-    except (TypeError, OverflowError):
-        raise ValueError(f"{name} must be numbers in an array of shape (N, 2), got {short(points)}") from None
+    array = as_floats(points, name, "(N, 2)")
     if array.size == 0 and array.ndim <= 2:
         return np.empty((0, 2))
     if array.ndim != 2 or array.shape[1] != 2:
@@ -143,10 +141,7 @@ def as_poses(poses: ArrayLike) -> Floats:
     >>> as_poses((0, 0, 0)).shape
     (1, 3)
     """
-    try:
-        array = as_floats(poses, "poses")
-    except (TypeError, OverflowError):
-        raise ValueError("poses must be numbers in an array of shape (P, 3): x, y, heading") from None
+    array = as_floats(poses, "poses", "(P, 3): x, y, heading")
     array = array.reshape(-1, 3) if array.size == 0 or array.shape == (3,) else array
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"poses must have shape (P, 3): x, y, heading; got shape {array.shape}")
@@ -163,30 +158,25 @@ def _all_finite(array: Floats, name: str) -> Floats:
     return array
 
 
-def as_floats(values: Any, name: str) -> Floats:
-    """Return values as an array of floats of any shape; a TypeError or OverflowError says that they are no numbers.
+def as_floats(values: Any, name: str, shape: str) -> Floats:
+    """Return values as an array of floats, or say in one sentence that they are none; the caller checks the shape.
 
-    >>> as_floats(np.ma.array([1.0, 2.0], mask=[False, True]), "ranges")
+    >>> as_floats(np.ma.array([1.0, 2.0], mask=[False, True]), "ranges", "(N,)")
     Traceback (most recent call last):
         ...
     ValueError: ranges must have no masked values, got 1 of them: leave them out, as compressed() does
     """
-    try:
-        array = np.asarray(values)
-    except (ValueError, RecursionError):  # rows of different lengths; too deep
-        raise TypeError from None
     parts = values if isinstance(values, (list, tuple)) else [values]
     if masked := sum(int(np.ma.getmaskarray(part).sum()) for part in parts if isinstance(part, np.ma.MaskedArray)):
         rule = f"{name} must have no masked values, got {masked} of them"
         raise ValueError(f"{rule}: leave them out, as compressed() does")
-    if array.dtype.kind == "O" and not all(isinstance(v, Number) and not isinstance(v, bool) for v in array.flat):
-        raise TypeError
-    if array.size and array.dtype.kind not in "fiuO":
-        raise TypeError  # numpy would read "1.5", True and a date as numbers, and drop what is imaginary
-    try:
-        return np.asarray(array, dtype=float)
-    except ValueError:
-        raise TypeError from None
+    with suppress(TypeError, ValueError, OverflowError, RecursionError):  # rows of different lengths, None, 10**400
+        array = np.asarray(values)
+        # numpy would read "1.5", True and a date as numbers, and drop what is imaginary.
+        mixed = array.dtype.kind == "O" and all(isinstance(v, Number) and not isinstance(v, bool) for v in array.flat)
+        if array.size == 0 or array.dtype.kind in "fiu" or mixed:
+            return np.asarray(array, dtype=float)
+    raise ValueError(f"{name} must be numbers in an array of shape {shape}, got {short(values)}")
 
 
 def as_rng(rng: Any) -> np.random.Generator:

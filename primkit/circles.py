@@ -24,7 +24,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arguments import Floats, as_floats, as_points, short
+from .arguments import Floats, as_floats, as_points
 from .ransac import Model, run_ransac
 from .shapes import Circle
 
@@ -189,10 +189,7 @@ def nearer_circle(circle: Circle, points: Floats, weights: Floats) -> Circle | N
 
 def _as_weights(weights: ArrayLike | None, n: int) -> Floats:
     """Return n weights, all alike when none are given."""
-    try:
-        w = np.ones(n) if weights is None else as_floats(weights, "weights")
-    except (TypeError, OverflowError):
-        raise ValueError(f"weights must be numbers in an array of shape ({n},), got {short(weights)}") from None
+    w = np.ones(n) if weights is None else as_floats(weights, "weights", f"({n},)")
     if w.shape != (n,):
         raise ValueError(f"weights must have shape ({n},), got shape {w.shape}")
     bad = w[~(np.isfinite(w) & (w >= 0))]

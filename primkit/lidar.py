@@ -226,15 +226,11 @@ def check_scan_type(field: str, dtype: DTypeLike) -> None:
 
 def _as_array(field: str, values: ArrayLike) -> NDArray[Any]:
     """Return the values of a field of scans as an array of its own type."""
-    try:
-        array = np.asarray(values)
-    except ValueError:
-        raise ValueError(
-            f"{field} must be an array of shape {SCAN_SHAPES[field]}, got rows of several lengths"
-        ) from None
-    check_scan_type(field, array.dtype)
+    if field == "inside":
+        check_scan_type(field, np.asarray(values).dtype)
+        return np.array(values, dtype=bool)
     with np.errstate(over="ignore"):  # what is too large for a float becomes inf
-        return array.astype(bool) if field == "inside" else as_floats(values, field)
+        return as_floats(values, field, SCAN_SHAPES[field])
 
 
 def _doubt_headings(poses: Floats, depth: int) -> None:

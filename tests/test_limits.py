@@ -183,8 +183,14 @@ BY_HAND = {
     "-1": (([(0, 0, 0)], [0.0], [[-1.0]], [False]), "ranges must be >= 0, or inf for no hit, got -1"),
     "flat": (([(0, 0, 0)], [0.0], [0.1], [False]), "shapes must be poses (P, 3), angles (B,), ranges (P, B)"),
     "50 angles": (([(0, 0, 0)], np.zeros(50), np.ones((1, 100)), [False]), "got (1, 3), (50,), (1, 100), (1,)"),
-    "ragged": (([(0, 0, 0)], [0.0], [[1], [1, 2]], [False]), "ranges must be an array of shape (P, B), got rows"),
-    "text": (([(0, 0, 0)], [0.0], [["0.1"]], [False]), "ranges must hold numbers, got the type <U3"),
+    "ragged": (
+        ([(0, 0, 0)], [0.0], [[1], [1, 2]], [False]),
+        "numbers in an array of shape (P, B), got [[1], [1, 2]]",
+    ),
+    "text": (
+        ([(0, 0, 0)], [0.0], [["0.1"]], [False]),
+        "numbers in an array of shape (P, B), got [['0.1']]",
+    ),
     "pose": (([(0, np.inf, 0)], [0.0], [[0.1]], [False]), "poses must be finite, got inf"),
     "masked": (
         ([(0, 0, 0)], [0.0], np.ma.masked_greater([[9.0]], 5), [False]),

@@ -746,19 +746,29 @@ POSES = {
 def test_as_poses(poses, expected):
     array = as_poses(poses)
     assert array.tolist() == expected
-    assert (array.shape, array.dtype) == ((len(expected), 3), np.float64)
+    assert (array.shape, array.dtype) == ((len(expected), 3), np.float64)NO_POSES = "poses must be numbers in an array of shape (P, 3): x, y, heading"
+
 
 
 POSES_FAILURES = {
     "without a heading": ([(1, 2)], "poses must have shape (P, 3): x, y, heading; got shape (1, 2)"),
     "flat": ((1, 2, 3, 4, 5, 6), "poses must have shape (P, 3): x, y, heading; got shape (6,)"),
-    "None": (None, "poses must be numbers in an array of shape (P, 3): x, y, heading"),
+    "None": (None, NO_POSES + ", got None"),
     "NaN": ([(0, 0, 0), (0, 0, NAN)], "poses must be finite, got (0.0, 0.0, nan) in row 1"),
     "infinity": ((INF, 0, 0), "poses must be finite, got (inf, 0.0, 0.0) in row 0"),
-    "text": ("abc", "poses must be numbers in an array of shape (P, 3): x, y, heading"),
-    "numbers as text": (("1", "2", "3"), "poses must be numbers in an array of shape (P, 3): x, y, heading"),
-    "ragged": ([(1, 2, 3), (1, 2)], "poses must be numbers in an array of shape (P, 3): x, y, heading"),
-    "too large for a float": ((HUGE, 0, 0), "poses must be numbers in an array of shape (P, 3): x, y, heading"),
+    "text": ("abc", NO_POSES + ", got 'abc'"),
+    "numbers as text": (
+        ("1", "2", "3"),
+        NO_POSES + ", got ('1', '2', '3')",
+    ),
+    "ragged": (
+        [(1, 2, 3), (1, 2)],
+        NO_POSES + ", got [(1, 2, 3), (1, 2)]",
+    ),
+    "too large for a float": (
+        (HUGE, 0, 0),
+        fNO_POSES + ", got {short((HUGE, 0, 0))}",
+    ),
 }
 
 
