@@ -746,10 +746,10 @@ POSES = {
 def test_as_poses(poses, expected):
     array = as_poses(poses)
     assert array.tolist() == expected
-    assert (array.shape, array.dtype) == ((len(expected), 3), np.float64)NO_POSES = "poses must be numbers in an array of shape (P, 3): x, y, heading"
+    assert (array.shape, array.dtype) == ((len(expected), 3), np.float64)
 
 
-
+NO_POSES = "poses must be numbers in an array of shape (P, 3): x, y, heading"
 POSES_FAILURES = {
     "without a heading": ([(1, 2)], "poses must have shape (P, 3): x, y, heading; got shape (1, 2)"),
     "flat": ((1, 2, 3, 4, 5, 6), "poses must have shape (P, 3): x, y, heading; got shape (6,)"),
@@ -767,7 +767,7 @@ POSES_FAILURES = {
     ),
     "too large for a float": (
         (HUGE, 0, 0),
-        fNO_POSES + ", got {short((HUGE, 0, 0))}",
+        NO_POSES + f", got {short((HUGE, 0, 0))}",
     ),
 }
 
