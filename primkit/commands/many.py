@@ -13,7 +13,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .words import Parser, count, meanwhile, path, say, whole
+from ..table import count
+from .words import Parser, meanwhile, path, say, whole
 
 if TYPE_CHECKING:
     from ..study import Row
