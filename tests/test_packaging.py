@@ -39,6 +39,12 @@ def test_environment_pins_what_the_project_needs(needed: str) -> None:
     assert requirement.specifier.contains(pins()[canonicalize_name(requirement.name)])
 
 
+def test_the_lowest_versions_are_those_that_are_stated() -> None:
+    lines = (ROOT / "tests" / "lowest.txt").read_text(encoding="utf-8").splitlines()
+    tested = [line.replace("==", ">=").removesuffix(".0") for line in lines if line and not line.startswith("#")]
+    assert tested[: len(PROJECT["dependencies"])] == [each.removesuffix(".0") for each in PROJECT["dependencies"]]
+
+
 def test_citation_has_the_project_s_version_and_licence() -> None:
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8").splitlines()
     assert f"version: {PROJECT['version']}" in citation
