@@ -44,7 +44,7 @@ LEAST_SIDE = 0.04
 
 TRIES_PER_SHAPE = 300  # a shape that found no room in this many tries will hardly find any
 TRIES_PER_WORLD = 20
-MOST_DRAWN = 1000  # shapes of a random world: each is measured to all before it
+MOST_RANDOM = 1000  # shapes of a random world: each is measured to all before it
 
 Style = Literal["paper", "free", "any"]
 STYLES: tuple[Style, ...] = ("paper", "free", "any")
@@ -225,7 +225,7 @@ def random_world(
     ()
     """
     rng = as_rng(rng)
-    limit(n := as_count(n, "n", least=0), MOST_DRAWN, "n must be at most {}")
+    limit(n := as_count(n, "n", least=0), MOST_RANDOM, "n must be at most {}")
     gap, size = as_positive(gap, "gap", zero=True), as_positive(size, "size")
     if style not in STYLES:
         raise ValueError(f'style must be "paper", "free" or "any", got {style!r}')
