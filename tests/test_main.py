@@ -63,7 +63,7 @@ HELP = {
         "usage: primkit map [-h] [--shapes N] [--seed S] [--style paper|free|any]",
         "number of shapes on a board of 1 m x 1 m (default: 4)",
         "seed of all that is random, a whole number (default: 7)",
-        "paper: upright, at most 4 shapes; free: at any angle (default: paper)",
+        "paper: upright, at most 4 shapes; free: at any angle; any: other polygons too (default: paper)",
         "a board of your own, GeoJSON (default: a random one)",
         "the method: ours, or as published (default: robust)",
         "standard deviation of the ranges in mm (default: 0)",
@@ -82,7 +82,7 @@ HELP = {
     ],
     "make-map": [
         "least distance between two shapes in mm (default: 50)",
-        "circle, triangle, rectangle or pentagon, for each shape (default: drawn)",
+        "circle, triangle, rectangle or pentagon, for each shape; in the style any also polygon, star, L ... (default: drawn)",
         "the file; one that is there is replaced (default: map.geojson)",
     ],
     "teach": [
