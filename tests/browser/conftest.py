@@ -2,7 +2,7 @@
 
 import pytest
 
-from .lab import chromium, enter, jupyter
+from .lab import PATIENCE, chromium, enter, jupyter
 
 
 @pytest.fixture(scope="package")
@@ -29,7 +29,7 @@ def address(folder):
 def context(browser, address):
     """The browser with Jupyter's address as its home."""
     context = browser.new_context(base_url=address, viewport={"width": 1280, "height": 1000})
-    context.set_default_timeout(30_000)
+    context.set_default_timeout(1000 * PATIENCE)
     yield context
     context.close()
 
@@ -40,7 +40,7 @@ def phone(browser, address):
     context = browser.new_context(
         base_url=address, viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True
     )
-    context.set_default_timeout(30_000)
+    context.set_default_timeout(1000 * PATIENCE)
     yield context
     context.close()
 
