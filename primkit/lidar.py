@@ -22,7 +22,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -40,8 +40,11 @@ from .arguments import (
     check_type,
     doubt,
     limit,
+    short,
 )
 from .raycast import cast
+from .rendered import FIELD, LEAST_BEAMS, render, rendered_bearings
+from .robot import inside_shape
 from .show import thumbnail
 from .table import count
 from .world import World
@@ -72,6 +75,10 @@ class Lidar:
         Share of the hits that are lost (from 0 to 1).
     spurious : float
         Share of all beams that return a random range, whatever is there (from 0 to 1).
+    model : {"exact", "webots"}
+        ``"exact"``: each beam meets the outline where geometry says. ``"webots"``: as the simulator of the paper's
+        authors renders it, wrong by 1.7 mm (root mean square) along an outline, see ``rendered``; its beams spread over
+        6.28 rad, the first one looks back, and no range equals ``range_max``.
 
     Raises
     ------
@@ -82,6 +89,8 @@ class Lidar:
     --------
     >>> Lidar().angles[:3].round(4).tolist()
     [0.0, 0.0628, 0.1257]
+    >>> Lidar(model="webots").angles[:3].round(4).tolist()
+    [-3.1086, -3.0458, -2.983]
     """
 
     beams: int = 100
@@ -91,6 +100,7 @@ class Lidar:
     period: float = 0.1
     dropout: float = 0.0
     spurious: float = 0.0
+    model: Literal["exact", "webots"] = "exact"
 
     def __post_init__(self) -> None:
         limit(as_count(self.beams, "beams"), MOST_BEAMS, "beams must be at most {}")
@@ -103,15 +113,21 @@ class Lidar:
         for name, least in (("noise_std", self.range_max), ("range_max", FARTHEST_HIT)):
             if getattr(self, name) > least:
                 doubt(f"{name} is {getattr(self, name):g} m: is it in millimetres?", depth=2)
+        if self.model not in ("exact", "webots"):
+            raise ValueError(f'model must be "exact" or "webots", got {short(self.model)}')
+        if self.model == "webots" and self.beams < LEAST_BEAMS:
+            raise ValueError(f'model "webots" must have at least {LEAST_BEAMS} beams, got {self.beams}')
 
     @property
     def angle_increment(self) -> float:
         """Angle from one beam to the next, in radians."""
-        return 2 * np.pi / self.beams
+        return (2 * np.pi if self.model == "exact" else FIELD) / self.beams
 
     @property
     def angles(self) -> Floats:
-        """Bearing of each beam from the robot's heading, shape (B,), radians in [0, 2 pi)."""
+        """Bearing of each beam from the robot's heading, shape (B,), radians, increasing within a turn."""
+        if self.model == "webots":
+            return rendered_bearings(self.beams)
         return np.arange(self.beams, dtype=float) * self.angle_increment
 
 
@@ -129,7 +145,7 @@ class Scans:
         Measured distances in metres; ``inf`` or 0 where a beam met nothing. ``as_ranges`` makes them of what a
         sensor's driver writes.
     inside : array of bool, shape (P,)
-        Poses that lie in a shape: they see nothing.
+        Poses that lie in a shape: they see nothing, but for a rendered LiDAR, which sees the others.
 
     Raises
     ------
@@ -345,10 +361,17 @@ def _scanned(
 
 def _block(world: World, poses: Floats, lidar: Lidar, faults: _Faults) -> Scans:
     angles = lidar.angles
-    ranges, inside = cast(world, poses, angles, lidar.range_max, lidar.range_min)
+    if lidar.model == "exact":
+        ranges, inside = cast(world, poses, angles, lidar.range_max, lidar.range_min)
+    else:
+        ranges, inside = (
+            render(world, poses, lidar.beams, (lidar.range_min, lidar.range_max)),
+            inside_shape(world, poses),
+        )
     for start in range(0, len(poses), SCANS_AT_ONCE):
         faults.disturb(ranges[start : start + SCANS_AT_ONCE])
-    ranges[inside] = np.inf
+    if lidar.model == "exact":
+        ranges[inside] = np.inf
     return _checked_before(poses, angles, ranges, inside)
 
 
