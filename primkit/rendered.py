@@ -46,7 +46,7 @@ def rendered_bearings(beams: int) -> Floats:
     >>> rendered_bearings(100)[[0, 49, 50, 99]].round(4).tolist()
     [-3.1086, -0.0314, 0.0314, 3.1086]
     """
-    bearings: Floats = (np.arange(beams) + 0.5) * (FIELD / beams) - FIELD / 2
+    bearings: Floats = (np.arange(beams, dtype=float) + 0.5) * (FIELD / beams) - FIELD / 2
     return bearings
 
 

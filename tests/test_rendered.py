@@ -5,7 +5,7 @@ import pytest
 import shapely
 
 from primkit.lidar import Lidar, scan
-from primkit.rendered import render, rendered_bearings
+from primkit.rendered import render
 from primkit.robot import inside_shape, waypoints
 from primkit.shapes import Circle, Polygon
 from primkit.world import World, random_world

@@ -26,7 +26,7 @@ before it:
 ``values.py``  what stands in a JSON text by a stranger
 ``drives.py``  drives as JSON Lines, one scan after the other
 ``routes.py``  how the wheels turned on a drive, as JSON
-``suite.py``   the paper's 34 maps, and a scripted drive on each
+``suite.py``   34 maps like the paper's, a scripted drive on each, and its own 34
 =============  ==============================================================
 """
 
@@ -35,12 +35,14 @@ from .files import StrPath, write_atomically
 from .maps import MAP_ENDINGS, MAP_LIMIT, load_world, save_world
 from .routes import ROUTE_ENDINGS, ROUTE_LIMIT, Route, load_route, save_route
 from .scans import SCAN_ENDINGS, SCANS_LIMIT, load_scans, save_scans
-from .suite import paper_suite, scripted_drives
+from .suite import paper_suite, published_suite, recorded_rows, scripted_drives
 
 __all__ = [
     "load_world",
     "save_world",
     "paper_suite",
+    "published_suite",
+    "recorded_rows",
     "scripted_drives",
     "load_scans",
     "save_scans",
