@@ -20,7 +20,6 @@ Source: the sensor is that of the paper's section 3.1; field names follow the La
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from copy import deepcopy
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -35,16 +34,15 @@ from .arguments import (
     as_floats,
     as_poses,
     as_positive,
-    as_rng,
     as_share,
     check_type,
     doubt,
     limit,
     short,
 )
+from .faults import Faults
 from .raycast import cast
 from .rendered import FIELD, LEAST_BEAMS, render, rendered_bearings
-from .robot import inside_shape
 from .show import thumbnail
 from .table import count
 from .world import World
@@ -354,51 +352,16 @@ def _scanned(
     """Check the other arguments and return the blocks."""
     lidar = Lidar() if lidar is None else lidar
     check_type(lidar, Lidar, "lidar must be a Lidar, such as Lidar()")
-    faults = _Faults(lidar, len(poses), min(size, SCANS_AT_ONCE), rng)
+    faults = Faults(lidar, len(poses), min(size, SCANS_AT_ONCE), rng)
     starts = range(0, max(1, len(poses)), size)
     return (_block(world, poses[start : start + size], lidar, faults) for start in starts)
 
 
-def _block(world: World, poses: Floats, lidar: Lidar, faults: _Faults) -> Scans:
-    angles = lidar.angles
-    if lidar.model == "exact":
-        ranges, inside = cast(world, poses, angles, lidar.range_max, lidar.range_min)
-    else:
-        ranges, inside = (
-            render(world, poses, lidar.beams, (lidar.range_min, lidar.range_max)),
-            inside_shape(world, poses),
-        )
+def _block(world: World, poses: Floats, lidar: Lidar, faults: Faults) -> Scans:
+    angles, look = lidar.angles, cast if lidar.model == "exact" else render
+    ranges, inside = look(world, poses, angles, lidar.range_max, lidar.range_min)
     for start in range(0, len(poses), SCANS_AT_ONCE):
         faults.disturb(ranges[start : start + SCANS_AT_ONCE])
     if lidar.model == "exact":
         ranges[inside] = np.inf
     return _checked_before(poses, angles, ranges, inside)
-
-
-class _Faults:
-    """The sensor's faults, each with a stream of numbers of its own, for a few scans after the other."""
-
-    def __init__(self, lidar: Lidar, n_scans: int, few: int, rng: int | np.random.Generator | None) -> None:
-        self.lidar = lidar
-        if rng is None and not (lidar.noise_std or lidar.dropout or lidar.spurious):
-            return  # nothing is random: seeding takes longer than a scan
-        self.noise, self.losses, self.ghosts = as_rng(rng).spawn(3)
-        # Of the ghosts' stream, the first numbers say for each beam whether there is one, the rest where.
-        self.places = self.ghosts
-        if lidar.spurious > 0 and n_scans > few:
-            self.places = deepcopy(self.ghosts)
-            for start in range(0, n_scans, few):
-                self.places.random((min(few, n_scans - start), lidar.beams))
-
-    def disturb(self, ranges: Floats) -> None:
-        """Add the faults to exact ranges, in place; they are those of the next scans."""
-        lidar = self.lidar
-        if lidar.noise_std > 0:
-            noisy = ranges + self.noise.normal(0.0, lidar.noise_std, ranges.shape)
-            hit = np.isfinite(ranges)
-            ranges[hit] = np.clip(noisy[hit], lidar.range_min, lidar.range_max)
-        if lidar.dropout > 0:
-            ranges[self.losses.random(ranges.shape) < lidar.dropout] = np.inf
-        if lidar.spurious > 0:
-            ghost = self.ghosts.random(ranges.shape) < lidar.spurious
-            ranges[ghost] = self.places.uniform(lidar.range_min, lidar.range_max, int(ghost.sum()))

@@ -14,12 +14,13 @@ the others are seen. A circle is drawn as a cylinder with 36 faces. Neither z no
 range, nor from its greatest on. Off the middle of its texel a beam is wrong by millimetres, always by the same: there
 is no noise in it.
 
-In:  a ``World`` and poses, shape (P, 3): x [m], y [m], heading [rad]; the number of beams; the limits in metres.
+In:  a ``World``; poses, shape (P, 3): x [m], y [m], heading [rad]; the beams' bearings, shape (B,); limits in metres.
 Out: ranges, shape (P, B), metres; ``inf`` where there is none.
 
 >>> from primkit.shapes import Circle
 >>> board, here = World([Circle((0.2, 0.0), 0.05)]), np.zeros((1, 3))
->>> render(board, here, 100, (0.05, 0.3))[0, 50:54].round(4).tolist()  # exact: 0.1503, 0.1528, 0.1585, 0.1707
+>>> ranges, _ = render(board, here, rendered_bearings(100), 0.3, 0.05)
+>>> ranges[0, 50:54].round(4).tolist()  # exact: 0.1503, 0.1528, 0.1585, 0.1707
 [0.1505, 0.1529, 0.1584, 0.1699]
 
 Source: read from the sources of Webots (cyberbotics/webots, R2023b), and held against the points that its paper shows.
@@ -30,6 +31,7 @@ from __future__ import annotations
 import numpy as np
 
 from .arguments import Bools, Floats
+from .robot import inside_shape
 from .shapes import Circle, Shape
 from .world import World
 
@@ -50,29 +52,29 @@ def rendered_bearings(beams: int) -> Floats:
     return bearings
 
 
-def render(world: World, poses: Floats, beams: int, limits: tuple[float, float]) -> Floats:
-    """Return what a rendered LiDAR reads from each pose, shape (P, B), metres; ``inf`` where there is nothing."""
-    bearings = rendered_bearings(beams)
-    camera = np.rint(bearings / QUARTER)
-    off = bearings - camera * QUARTER  # a - b
-    n = int(np.ceil(2 / np.tan(FIELD / beams)))
+def render(world: World, poses: Floats, angles: Floats, range_max: float, range_min: float) -> tuple[Floats, Bools]:
+    """Return what a rendered LiDAR reads, shape (P, B), metres, and which poses lie in a shape, shape (P,)."""
+    camera = np.rint(angles / QUARTER)
+    off = angles - camera * QUARTER  # a - b
+    n = int(np.ceil(2 / np.tan(FIELD / len(angles))))
     texel = np.clip(np.floor(n * (1 - np.tan(off)) / 2), 0, n - 1)
     middle = np.arctan(1 - 2 * (texel + 0.5) / n)  # m - b
     starts, ways = _sides(world)
-    ranges = np.empty((len(poses), beams))
+    ranges = np.empty((len(poses), len(angles)))
     for row, (x, y, heading) in enumerate(poses):
         turned = heading + camera * QUARTER + middle
         rays = np.column_stack([np.cos(turned), np.sin(turned)])
-        depth = _within(_first_front(starts - (x, y), ways, rays) * np.cos(middle), limits)
-        ranges[row] = _within(depth / np.cos(off), limits)
-    return ranges
+        depth = _within(_first_front(starts - (x, y), ways, rays) * np.cos(middle), range_min, range_max)
+        ranges[row] = _within(depth / np.cos(off), range_min, range_max)
+    return ranges, inside_shape(world, poses)
 
 
 def _sides(world: World) -> tuple[Floats, Floats]:
-    """Return where the sides of all outlines begin, and the ways to their ends, shape (K, 2) each, metres."""
+    """Return where the sides that are drawn begin, and the ways to their ends, shape (K, 2) each, metres."""
     rings = [_corners(shape) for shape in world.shapes]
     ways = [np.concatenate([ring[1:], ring[:1]]) - ring for ring in rings]
-    return np.vstack([np.empty((0, 2)), *rings]), np.vstack([np.empty((0, 2)), *ways])
+    walls = world.walls[:, ::-1]  # they face inwards
+    return np.vstack([*rings, walls[:, 0]]), np.vstack([*ways, walls[:, 1] - walls[:, 0]])
 
 
 def _corners(shape: Shape) -> Floats:
@@ -98,6 +100,5 @@ def _cross(a: Floats, b: Floats) -> Floats:
     return product
 
 
-def _within(distance: Floats, limits: tuple[float, float]) -> Floats:
-    low, high = limits
+def _within(distance: Floats, low: float, high: float) -> Floats:
     return np.where((distance >= low) & (distance < high), distance, np.inf)

@@ -23,7 +23,7 @@ PACKAGE = ROOT / "primkit"
 # ``found`` the list that find_shapes returns.
 ORDER = (
     *("arguments", "table"),
-    *("shapes", "palette", "show", "world", "robot", "raycast", "rendered", "lidar", "grid"),
+    *("shapes", "palette", "show", "world", "robot", "raycast", "faults", "rendered", "lidar", "grid"),
     *("segmentation", "ransac", "lines", "circles", "seen"),
     *("robust", "measure", "found", "paper", "steps", "pipeline", "evaluation"),
     *("formats", "driving", "study", "plots", "widgets", "scene", "checks", "course"),

@@ -5,15 +5,19 @@ import pytest
 import shapely
 
 from primkit.lidar import Lidar, scan
-from primkit.rendered import render
+from primkit.rendered import render, rendered_bearings
 from primkit.robot import inside_shape, waypoints
 from primkit.shapes import Circle, Polygon
 from primkit.world import World, random_world
 from tests.helpers import exactly
 
 INF = float("inf")
-LIMITS = (0.05, 0.3)
+BEARINGS = rendered_bearings(100)
 WEBOTS = Lidar(model="webots")
+
+
+def rendered(world, poses, beams, nearest=0.05, farthest=0.3):
+    return render(world, poses, rendered_bearings(beams), farthest, nearest)[0]
 
 
 def box(left, low, right, high):
@@ -43,7 +47,7 @@ def test_it_reads_the_texels_that_geos_draws(seed):
     poses = np.column_stack([rng.uniform(-0.5, 0.5, (12, 2)), rng.uniform(-4, 4, 12)])
     poses = poses[~inside_shape(world, poses)]
     angles = 6.28 / 2 - (np.arange(100)[::-1] + 0.5) * 6.28 / 100
-    for pose, ranges in zip(poses, render(world, poses, 100, LIMITS), strict=True):
+    for pose, ranges in zip(poses, rendered(world, poses, 100), strict=True):
         depths = pictures(world, *pose)
         for angle, reading in zip(angles, ranges, strict=True):
             camera = round(angle / (np.pi / 2))
@@ -67,12 +71,12 @@ WALLS = {
 
 @pytest.mark.parametrize(("wall", "expected"), WALLS.values(), ids=WALLS)
 def test_a_wall(wall, expected):
-    assert render(World([wall]), np.zeros((1, 3)), 100, LIMITS)[0, 50] == pytest.approx(expected)
+    assert rendered(World([wall]), np.zeros((1, 3)), 100)[0, 50] == pytest.approx(expected)
 
 
 def test_what_is_too_near_hides_what_is_behind_it():
     near, far = box(0.03, -0.01, 0.04, 0.01), box(0.1, -0.2, 0.2, 0.2)
-    assert render(World([near, far]), np.zeros((1, 3)), 100, LIMITS)[0, 50] == INF
+    assert rendered(World([near, far]), np.zeros((1, 3)), 100)[0, 50] == INF
 
 
 def test_from_inside_a_shape_the_others_are_seen():
@@ -87,13 +91,19 @@ def test_a_circle_is_a_cylinder_of_36_faces():
     """Straight ahead is one of its edges; five degrees on, its face lies deeper by r (1 - cos 5 degrees)."""
     circle = Circle((1, 0), 0.5)
     turned = [(1 - np.cos(a), -np.sin(a), a) for a in np.radians([0, 5])]
-    seen = render(World([circle]), np.array(turned), 10_000, (0.05, 2))[:, 5000]
+    seen = rendered(World([circle]), np.array(turned), 10_000, farthest=2)[:, 5000]
     assert seen == pytest.approx([0.5, 1 - 0.5 * np.cos(np.radians(5))], abs=1e-4)
 
 
 def test_nothing_is_nothing():
-    assert render(World(), np.zeros((2, 3)), 8, LIMITS).tolist() == [[INF] * 8] * 2
-    assert render(random_world(2, rng=0), np.empty((0, 3)), 100, LIMITS).shape == (0, 100)
+    assert rendered(World(), np.zeros((2, 3)), 8).tolist() == [[INF] * 8] * 2
+    assert rendered(random_world(2, rng=0), np.empty((0, 3)), 100).shape == (0, 100)
+
+
+def test_the_walls_of_a_board_face_inwards():
+    there, beyond = render(World(size=0.4, walls=True), np.array([(0, 0, 0), (0.3, 0, np.pi)]), BEARINGS, 0.3, 0.05)[0]
+    assert there[50] == pytest.approx(0.2 / np.cos(0.0314))
+    assert beyond[50] == INF
 
 
 def test_noise_and_dropouts_come_on_top():
