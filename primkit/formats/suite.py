@@ -17,6 +17,7 @@ Not here: how the files were made (``tests/shipped_data.py``).
 from __future__ import annotations
 
 import csv
+import json
 from pathlib import Path
 
 from ..shapes import PRIMITIVES
@@ -83,6 +84,20 @@ def recorded_rows() -> list[dict[str, str]]:
     """
     with (_data_folder() / "published" / "rows.csv").open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
+
+
+def bundled_keys() -> dict[str, str]:
+    """Return the keys of a drive on each map of ``published_suite``, one letter for a tenth of a second.
+
+    A rule pressed them, see ``driving.keyed``, and nobody.
+
+    Examples
+    --------
+    >>> bundled_keys()["1_circle"][:4]
+    'AAAA'
+    """
+    keys: dict[str, str] = json.loads((_data_folder() / "published" / "keys.json").read_text(encoding="utf-8"))
+    return keys
 
 
 def scripted_drives() -> dict[str, Route]:
