@@ -102,7 +102,8 @@ class Report:
         How it was scored.
     crashed : bool
         Whether the published scoring ends without a result, for a shape of a wrong kind: it looks for a dimension that
-        the true shape does not have. (A pentagon in the place of a rectangle passes.) All accuracies are then 0.
+        the true shape does not have. (A pentagon in the place of a rectangle passes.) All accuracies are then 0. What
+        it does when shapes are missing is not known; they count as wrong in every part.
     """
 
     matches: tuple[Match, ...]

@@ -24,11 +24,11 @@ import numpy as np
 
 from ..arguments import Floats, as_rng
 from ..formats import bundled_keys
-from ..robot import AXLE, FASTEST, PERIOD, WHEEL, moved
+from ..robot import AXLE, FASTEST, PERIOD, PUBLISHED_HEADING, WHEEL, moved
 from ..world import World
 from .scripted import LOOK_AHEAD, MOST_PERIODS, WAY_STEP, progress, tour
 
-KEYED_START = np.array([-0.0865, -0.2117, np.radians(0.15)])  # the same in all of the paper's worlds
+KEYED_START = np.array([-0.0865, -0.2117, PUBLISHED_HEADING])  # the same in all of the paper's worlds
 TURN_SPEED = 4.17  # rad/s
 KEYS = {
     "W": (FASTEST, FASTEST),
