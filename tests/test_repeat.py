@@ -31,9 +31,9 @@ PRINTED = {
 
 
 def is_printed(means, figures):
-    """Whether means are printed so: rounded to two decimals, up or down (0.625 as 0.63), or cut (0.839 as 0.83)."""
+    """Whether means are printed so: rounded to two decimals (0.625 as 0.63, 10.694 as 10.7), or cut (0.839 as 0.83)."""
     above = np.subtract(means, figures)
-    return (above > -0.0051) & (above < 0.0099)
+    return (above > -0.0065) & (above < 0.0099)
 
 
 def recorded(movement, start, without=()):
