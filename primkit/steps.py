@@ -121,11 +121,6 @@ class Steps:
             raise ValueError(f"{rule}, with a radius > 0, got {short(circle)}")
         return Circle((x, y), radius)
 
-    def line_params(self, points: Floats) -> Floats:
-        """Return the own line as RANSAC wants it: (angle, offset), shape (2,); NaN for none."""
-        line = self.line(points)
-        return np.full(2, np.nan) if line is None else np.array([line.angle, line.offset])
-
     def remeasured(self, found: Detection, reach: float, *, sides: bool = True) -> Detection | None:
         """Return the detection measured with the own fits; None when they find nothing.
 

@@ -23,12 +23,15 @@ from .files import StrPath, write_atomically
 from .maps import MAP_ENDINGS, MAP_LIMIT, load_world, save_world
 from .routes import ROUTE_ENDINGS, ROUTE_LIMIT, Route, load_route, save_route
 from .scans import SCAN_ENDINGS, SCANS_LIMIT, load_scans, save_scans
-from .suite import paper_suite, scripted_drives
+from .suite import bundled_keys, paper_suite, published_suite, recorded_rows, scripted_drives
 
 __all__ = [
     "load_world",
     "save_world",
     "paper_suite",
+    "published_suite",
+    "recorded_rows",
+    "bundled_keys",
     "scripted_drives",
     "load_scans",
     "save_scans",

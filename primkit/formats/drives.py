@@ -302,7 +302,7 @@ def _lidar_in(line: bytes) -> Lidar:
     if told.get("version") != DRIVE_VERSION:
         raise ValueError(f"must be a drive of version {DRIVE_VERSION}, got version {short(told.get('version'))}")
     lidar, names = told.get("lidar"), {field.name for field in fields(Lidar)}
-    if not isinstance(lidar, dict) or set(lidar) != names:
+    if not isinstance(lidar, dict) or set({"model": "exact"} | lidar) != names:  # older drives tell no model
         raise ValueError(f"lidar must have {', '.join(sorted(names))}, got {short(lidar)}")
     return Lidar(**lidar)
 
