@@ -155,7 +155,7 @@ def oracle_fit(world: World, points: Floats, owners: Ints) -> list[Shape | None]
     -------
     list of Circle, Polygon and None
         None where a side has fewer than two points, or a circle fewer than three; and where the sides' lines do
-        not meet in a convex outline.
+        not meet in a simple outline.
 
     Examples
     --------
