@@ -326,7 +326,7 @@ def in_voila(context, folder, name, sources):
     """Open a notebook as a page without code."""
     (folder / "notebooks" / f"{name}.ipynb").write_text(notebook(sources))
     page = context.new_page()
-    page.goto(f"/voila/render/{name}.ipynb?token={TOKEN}", timeout=60_000)
+    page.goto(f"/voila/render/{name}.ipynb?token={TOKEN}")
     return page
 
 
