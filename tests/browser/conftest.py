@@ -1,15 +1,8 @@
 """One Jupyter and one browser for all tests in here; without them they are skipped, or fail where they must be."""
 
-import os
-
 import pytest
 
-try:
-    from .lab import PATIENCE, chromium, enter, jupyter
-except ModuleNotFoundError:  # playwright; the header of the run says so
-    if os.environ.get("PRIMKIT_BROWSER") == "required":
-        raise
-    collect_ignore_glob = ["*.py"]
+from .lab import PATIENCE, chromium, enter, jupyter
 
 
 @pytest.fixture(scope="package")
