@@ -237,7 +237,7 @@ def random_world(
     limit(n := as_count(n, "n", least=0), MOST_RANDOM, "n must be at most {}")
     gap, size = as_positive(gap, "gap", zero=True), as_positive(size, "size")
     if style not in STYLES:
-        raise ValueError(f'style must be "paper", "free" or "any", got {style!r}')
+        raise ValueError(f'style must be "paper", "free" or "any", got {short(style)}')
     if style == "paper" and n > len(QUADRANTS):
         raise ValueError(f'the paper\'s style has room for at most 4 shapes, got {n}; use style="free" for more')
     kinds = _checked_kinds(kinds, n, style, rng)
@@ -265,7 +265,7 @@ def _checked_kinds(
         raise ValueError(f"kinds must name one kind for each of the {n} shapes, got {len(kinds)}")
     for kind in kinds:
         if kind not in drawn and not (kind == "polygon" and style == "any"):
-            raise ValueError(f"a kind must be one of {', '.join(drawn)}, got {kind!r}")
+            raise ValueError(f"a kind must be one of {', '.join(drawn)}, got {short(kind)}")
     return [SORTS[rng.integers(len(SORTS))] if kind == "polygon" else kind for kind in kinds]
 
 
