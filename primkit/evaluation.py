@@ -31,7 +31,7 @@ from typing import Literal
 
 import numpy as np
 
-from .arguments import ROUNDING, Floats, as_positive, check_type, doubt
+from .arguments import ROUNDING, Floats, as_positive, check_type, doubt, short
 from .measure import Detection
 from .paper import published_values
 from .shapes import Circle, Polygon, Shape
@@ -242,7 +242,7 @@ def evaluate(
         compare, tolerance = _compare_as_published, PAPER_TOLERANCE
         crashed = any(not _values(shapes[f], False).keys() <= _values(world.shapes[t], True).keys() for f, t in pairs)
     else:
-        raise ValueError(f'protocol must be "fair" or "paper", got {protocol!r}')
+        raise ValueError(f'protocol must be "fair" or "paper", got {short(protocol)}')
     matched_found, matched_true = {f for f, _ in pairs}, {t for _, t in pairs}
     return Report(
         matches=tuple(compare(shapes[f], world.shapes[t], tolerance) for f, t in pairs),

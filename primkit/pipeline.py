@@ -24,7 +24,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arguments import Floats, Labels, as_count, as_points, as_positive, as_rng, check_type
+from .arguments import Floats, Labels, as_count, as_points, as_positive, as_rng, check_type, short
 from .found import Found
 from .grid import Grid
 from .measure import CELL, Detection, Frame, as_detection, detection
@@ -78,9 +78,9 @@ class Settings:
 
     def __post_init__(self) -> None:
         if self.grouping not in ("link", "kmeans"):
-            raise ValueError(f'grouping must be "link" or "kmeans", got {self.grouping!r}')
+            raise ValueError(f'grouping must be "link" or "kmeans", got {short(self.grouping)}')
         if self.method not in ("joint", "published"):
-            raise ValueError(f'method must be "joint" or "published", got {self.method!r}')
+            raise ValueError(f'method must be "joint" or "published", got {short(self.method)}')
         if self.noise_std is not None:
             as_positive(self.noise_std, "noise_std", zero=True)
         as_count(self.line_trials, "line_trials")
@@ -181,7 +181,7 @@ def _points_on_cells(points: Grid | ArrayLike, resolution: float | None) -> tupl
     """Return points, shape (N, 2), and the side of their cells, both metres."""
     if isinstance(points, Grid) or (hasattr(points, "resolution") and hasattr(points, "points")):  # a MovingGrid
         if resolution is not None:
-            raise ValueError(f"resolution must not be given with a grid, which knows its own, got {resolution!r}")
+            raise ValueError(f"resolution must not be given with a grid, which knows its own, got {short(resolution)}")
         return points.points(), points.resolution
     return as_points(points), CELL if resolution is None else as_positive(resolution, "resolution")
 

@@ -328,6 +328,7 @@ LIKELY = {
     "ranges": (lambda: Scans([(0, 0, 0)], [0.0], [[2500]], [False]), "ranges reach 2500 m: are they in millimetres?"),
     "off the board": (lambda: pk.World([pk.Circle((2, 0), 0.1)]), "lies off the board of 1 m"),
     "on each other": (lambda: pk.World([pk.Circle((0, 0), 0.1), pk.Circle((0.1, 0), 0.1)]), "lie on each other"),
+    "twice": (lambda: pk.World([pk.Circle((0, 0), 0.1)] * 2), "lie on each other"),
     "across each other": (
         lambda: pk.World(
             [pk.Polygon([(-2, -1), (2, -1), (2, 1), (-2, 1)]), pk.Polygon([(-1, -2), (1, -2), (1, 2), (-1, 2)])], 9

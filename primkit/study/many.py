@@ -32,7 +32,7 @@ from typing import Any, TypeVar
 
 from numpy.typing import ArrayLike
 
-from ..arguments import as_count, as_poses, as_positive, check_type
+from ..arguments import as_count, as_poses, as_positive, check_type, short
 from ..formats import MAP_ENDINGS, StrPath, load_world, published_suite
 from ..lidar import Lidar
 from ..pipeline import PAPER, ROBUST, Settings
@@ -304,4 +304,4 @@ def checked_jobs(jobs: int | None) -> int | None:
     try:
         return as_count(jobs, "jobs")
     except ValueError:
-        raise ValueError(f"jobs must be a whole number >= 1, -1 for every core, or None, got {jobs!r}") from None
+        raise ValueError(f"jobs must be a whole number >= 1, -1 for every core, or None, got {short(jobs)}") from None
