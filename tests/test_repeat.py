@@ -88,7 +88,7 @@ def test_like_stands_beside_like(again):
     assert "The same as recorded in all four numbers: 4 of 4 rows." in first.notes
     assert any(note.startswith("Printed in the paper for 4 shapes") for note in several.notes)
     assert any("nine rows divided by ten" in note for note in driven[1].notes)
-    assert [line.mean.center for line in several.lines if line.method == "recorded"] == [1.0, 1.0]
+    assert [line.means[2].value for line in several.lines if line.method == "recorded"] == [1.0, 1.0]
 
 
 def test_row_by_row(again):
@@ -105,7 +105,7 @@ def test_a_crashed_run_is_told_and_not_counted():
     none, half = Score(0.0, 0.0, 0.0, 0.0), Score(0.5, 0.5, 0.5, 0.5)
     rows = [vars(row) | {"paper": half} for _ in range(2)] + [vars(row) | {"paper": none, "crashed": True}]
     (table,) = tables([Row(**values) for values in rows])
-    shown = [(line.method, line.scoring, line.n, line.mean.weighted) for line in table.lines if line.maps == "circle"]
+    shown = [(line.method, line.scoring, line.n, line.means[0].value) for line in table.lines if line.maps == "circle"]
     assert shown == [
         ("PAPER repeated", "(2 of 3 survived)", 2, 0.5),
         ("PAPER repeated", "crashes as 0", 3, pytest.approx(1 / 3)),
