@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 
 from .arguments import Floats, as_points, as_positive
 from .robust.candidates import candidates
-from .robust.choice import Choice
+from .robust.choice import CERTAIN, Choice
 from .robust.deviations import Certainty
 from .robust.scatter import LEAST_SPREAD
 from .seen import seen_shares
@@ -152,13 +152,21 @@ class Detection:
 
     @property
     def margin(self) -> float:
-        """How much better this shape explains the points than the best of another kind.
+        """How much better this shape explains the points than the best rival: another kind, or an outline of none.
 
         Twice the logarithm of the Bayes factor; above 10 is very strong (Kass and Raftery, 1995). Infinite without a
         rival; NaN from ``PAPER``, which does not ask. Where the shape was beyond doubt at a glance, its rivals are
         fitted now, when the margin is asked for: some 10 ms, once.
         """
         return float("nan") if self.choice is None else self.choice.margin
+
+    @property
+    def certain(self) -> bool:
+        """Whether the kind is beyond doubt and the points fit it: what is certain may be trusted. False from ``PAPER``.
+
+        Rivals are all kinds, any outline of straight sides, and an outline that may bend anywhere.
+        """
+        return self.choice is not None and self.choice.certain and not self.count_margin < CERTAIN
 
     @property
     def kind(self) -> Kind:
