@@ -24,11 +24,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .account import Account, things_of
 from .arguments import Floats, as_count, as_points, as_positive, as_rng, as_share, check_type
 from .found import Found
 from .grid import Grid
 from .lines import LINE, find_lines
-from .measure import CELL, Detection, Frame, as_detection, detection
+from .measure import CELL, Detection, Frame, Thing, detection
 from .paper import measure_as_published
 from .robust.regroup import Group, explained, grown, regrouped
 from .robust.scatter import LEAST_SPREAD, SIGMAS, spread_across, spread_from_median, spread_of
@@ -150,7 +151,7 @@ def find_shapes(
     Returns
     -------
     Found
-        A list of ``Detection``, from left to right; empty when there is nothing.
+        A list of ``Detection``, from left to right, that carries also ``walls``, ``others`` and ``strays``.
 
     Raises
     ------
@@ -171,21 +172,29 @@ def find_shapes(
         check_count(n_shapes, points)
     if len(points) == 0 or n_shapes == 0:
         return Found()
-    points = points[np.lexsort((points[:, 1], points[:, 0]))]  # the order of seeing leaves no trace
     frame = Frame.of(points, resolution)
+    local = frame.local(points)
+    order = np.lexsort((local[:, 1], local[:, 0]))  # the order of seeing leaves no trace
+    points, local = points[order], local[order]
     group_rng, measure_rng = as_rng(rng).spawn(2)
     labels = steps.labels(points, n_shapes)
-    local = frame.local(points)
     if labels is None:
         asked = n_shapes if settings.grouping == "kmeans" else None
         labels = segment(local, asked, method=settings.grouping, rng=group_rng)
     together = [local[labels == label] for label in range(labels.max() + 1)]
+    account = Account.of(points, local, frame, labels < 0)
     steps = steps.within(frame)
+    found: list[Thing] = []
     if settings.method == "published":
-        found = _as_published(together, settings, steps, measure_rng)
+        found += _as_published(together, settings, steps, measure_rng)
     else:
-        found = _jointly(together, n_shapes, settings, steps, {} if memory is None else memory, measure_rng)
-    return Found(sorted(map(frame.world, found), key=lambda d: tuple(d.shape.centroid)))
+        memory = {} if memory is None else memory
+        groups, margins = _jointly(together, n_shapes, settings, memory, measure_rng)
+        for group, margin in zip(groups, margins, strict=True):
+            for thing in things_of(group.choice, margin, account):
+                own = steps.remeasured(thing, SIGMAS * group.spread) if isinstance(thing, Detection) else thing
+                found += [] if own is None else [own]
+    return account.closed(found)
 
 
 def _points_on_cells(points: Grid | ArrayLike, resolution: float | None) -> tuple[Floats, float]:
@@ -201,10 +210,9 @@ def _jointly(
     together: list[Floats],
     n_shapes: int | None,
     settings: Settings,
-    steps: Steps,
     memory: Memory,
     rng: np.random.Generator,
-) -> list[Detection]:
+) -> tuple[list[Group], list[float]]:
     """Explain each group, and ask for a second opinion on the groups: the default way."""
     seed = int(rng.integers(2**63))
     used: Memory = {}
@@ -230,11 +238,7 @@ def _jointly(
         groups, margins = regrouped(groups, spread, n_shapes, explain=partial(explain, spread=spread))
     memory.clear()  # what was not used now will not come again: a map only grows
     memory.update(used)
-    found = []
-    for group, margin in zip(groups, margins, strict=True):
-        if (one := as_detection(group.choice)) is not None:
-            found.append(steps.remeasured(replace(one, count_margin=margin), SIGMAS * spread))
-    return [one for one in found if one is not None]
+    return groups, margins
 
 
 def _explain_all(
