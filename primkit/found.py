@@ -17,9 +17,13 @@ no shapes found
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import SupportsIndex, overload
 
-from .measure import Detection
+import numpy as np
+
+from .arguments import Floats
+from .measure import Detection, Other, Wall
 from .show import in_mm
 from .table import Table, count
 
@@ -28,7 +32,18 @@ SUPPOSED = "In brackets: supposed, not measured."
 
 
 class Found(list[Detection]):
-    """A list of detections, from left to right.
+    """A list of detections, from left to right, and what else the points are: the sum of all is all points.
+
+    Parameters
+    ----------
+    shapes : iterable of Detection
+        The shapes.
+    walls : sequence of Wall
+        Straight pieces.
+    others : sequence of Other
+        Things that are none of the kinds.
+    strays : array, shape (N, 2)
+        Points that lie on nothing, metres.
 
     Examples
     --------
@@ -36,12 +51,30 @@ class Found(list[Detection]):
     (True, no shapes found)
     """
 
+    def __init__(
+        self,
+        shapes: Iterable[Detection] = (),
+        walls: Iterable[Wall] = (),
+        others: Iterable[Other] = (),
+        strays: Floats | None = None,
+    ) -> None:
+        super().__init__(shapes)
+        self.walls, self.others = tuple(walls), tuple(others)
+        self.strays = np.empty((0, 2)) if strays is None else strays
+
     def table(self) -> Table:
         """Return what was found as a table, a row for each shape."""
         rows = [(str(k), *_cells(one)) for k, one in enumerate(self[:MOST_ROWS])]
         notes = [SUPPOSED] if any("(" in row[3] for row in rows) else []
         notes += [f"And {len(self) - MOST_ROWS} more."] if len(self) > MOST_ROWS else []
-        return Table(FOUND_HEADER, rows, f"{count(len(self), 'shape')} found", notes)
+        return Table(FOUND_HEADER, rows, self._title(), notes)
+
+    def _title(self) -> str:
+        """Return in words what the points are."""
+        rest = [count(len(self.walls), "wall")] if self.walls else []
+        rest += [f"{count(len(self.others), 'thing')} of no kind"] if self.others else []
+        rest += [count(len(self.strays), "stray")] if len(self.strays) else []
+        return f"{count(len(self), 'shape')} found{'; ' * bool(rest)}{', '.join(rest)}"
 
     def __repr__(self) -> str:
         table = self.table()

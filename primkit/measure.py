@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 
 from .arguments import Floats, as_points, as_positive
 from .robust.candidates import candidates
-from .robust.choice import Choice
+from .robust.choice import CERTAIN, Choice
 from .robust.deviations import Certainty
 from .robust.scatter import LEAST_SPREAD
 from .seen import seen_shares
@@ -77,15 +77,6 @@ class Frame:
         """Return points of the frame, shape (N, 2), in metres."""
         return local * self.unit + self.origin
 
-    def world(self, found: Detection) -> Detection:
-        """Return what was found in the frame, in metres."""
-        shape, points = found.shape, self.metres(found.points)
-        if isinstance(shape, Circle):
-            shape = Circle(self.metres(shape.center), shape.radius * self.unit)
-        else:
-            shape = Polygon(self.metres(shape.vertices))
-        return replace(found, shape=shape, points=points, rms=found.rms * self.unit, unit=self.unit)
-
 
 @dataclass(frozen=True, eq=False)
 class Detection:
@@ -122,6 +113,15 @@ class Detection:
     choice: Choice | None = field(default=None, repr=False)
     unit: float = field(default=1.0, repr=False)
 
+    def in_metres(self, frame: Frame) -> Detection:
+        """Return what was found in a frame, in metres."""
+        shape, metres = self.shape, frame.metres
+        if isinstance(shape, Circle):
+            shape = Circle(metres(shape.center), shape.radius * frame.unit)
+        else:
+            shape = Polygon(metres(shape.vertices))
+        return replace(self, shape=shape, points=metres(self.points), rms=self.rms * frame.unit, unit=frame.unit)
+
     def __repr__(self) -> str:
         centre, dimensions = in_mm(self.shape, self.measured)
         at = f"{self.kind} at ({centre}) mm, {dimensions} mm"
@@ -152,13 +152,21 @@ class Detection:
 
     @property
     def margin(self) -> float:
-        """How much better this shape explains the points than the best of another kind.
+        """How much better this shape explains the points than the best rival: another kind, or an outline of none.
 
         Twice the logarithm of the Bayes factor; above 10 is very strong (Kass and Raftery, 1995). Infinite without a
         rival; NaN from ``PAPER``, which does not ask. Where the shape was beyond doubt at a glance, its rivals are
         fitted now, when the margin is asked for: some 10 ms, once.
         """
         return float("nan") if self.choice is None else self.choice.margin
+
+    @property
+    def certain(self) -> bool:
+        """Whether the kind is beyond doubt and the points fit it: what is certain may be trusted. False from ``PAPER``.
+
+        Rivals are all kinds, any outline of straight sides, and an outline that may bend anywhere.
+        """
+        return self.choice is not None and self.choice.certain and not self.count_margin < CERTAIN
 
     @property
     def kind(self) -> Kind:
@@ -169,6 +177,70 @@ class Detection:
     def measured(self) -> tuple[bool, ...]:
         """Which of the shape's dimensions were measured, and not only supposed."""
         return tuple(std < float("inf") for std in self.dimension_std)
+
+
+@dataclass(frozen=True, eq=False)
+class Wall:
+    """A straight piece that was seen from one side, and is no side of a shape as far as one can tell.
+
+    Parameters
+    ----------
+    start, end : array, shape (2,)
+        Where it begins and ends, as far as it was seen, metres.
+    points : array, shape (N, 2)
+        The points that lie on it, metres.
+    std : float
+        Standard deviation of its place across, in its middle, metres.
+    ends_seen : tuple of bool
+        Whether it ends at start, and at end, in a corner with another wall; else it is cut off there, and may go on.
+    """
+
+    start: Floats
+    end: Floats
+    points: Floats
+    std: float
+    ends_seen: tuple[bool, bool] = (False, False)
+
+    @property
+    def length(self) -> float:
+        """From start to end, metres."""
+        return float(np.hypot(*(self.end - self.start)))
+
+    def in_metres(self, frame: Frame) -> Wall:
+        """Return what was found in a frame, in metres."""
+        start, end, points = (frame.metres(p) for p in (self.start, self.end, self.points))
+        return replace(self, start=start, end=end, points=points, std=self.std * frame.unit)
+
+    def __repr__(self) -> str:
+        ends = [", ".join(f"{1000 * v + 0.0:.1f}" for v in end) for end in (self.start, self.end)]
+        return f"Wall: ({ends[0]}) to ({ends[1]}) mm; {count(len(self.points), 'point')}"
+
+
+@dataclass(frozen=True, eq=False)
+class Other:
+    """A thing that is none of the kinds: it is curved and no circle, or too small to tell.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        Its points, metres.
+    outline : array, shape (K, 2)
+        Corners of straight pieces through them, metres.
+    """
+
+    points: Floats
+    outline: Floats
+
+    def in_metres(self, frame: Frame) -> Other:
+        """Return what was found in a frame, in metres."""
+        return Other(frame.metres(self.points), frame.metres(self.outline))
+
+    def __repr__(self) -> str:
+        x, y = 1000 * self.points.mean(axis=0)
+        return f"Other: at ({x:.1f}, {y:.1f}) mm; {count(len(self.points), 'point')}"
+
+
+Thing = Detection | Wall | Other
 
 
 def measure_shape(
@@ -212,7 +284,7 @@ def measure_shape(
     frame = Frame.of(points, as_positive(resolution, "resolution"))
     local, spread = frame.local(points), max(LEAST_SPREAD, spread / frame.unit)
     found = as_detection(Choice(local, candidates(local, spread, rng=rng), spread))
-    return None if found is None else frame.world(found)
+    return None if found is None else found.in_metres(frame)
 
 
 def as_detection(choice: Choice) -> Detection | None:

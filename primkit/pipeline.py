@@ -17,17 +17,18 @@ any rotation, and lets the likelihood decide between circle and polygon.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from functools import partial
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .account import Account, things_of
 from .arguments import Floats, Labels, as_count, as_points, as_positive, as_rng, check_type, short
 from .found import Found
 from .grid import Grid
-from .measure import CELL, Detection, Frame, as_detection, detection
+from .measure import CELL, Detection, Frame, Thing, detection
 from .paper import CIRCLE_TRIALS, LINE_TRIALS, ON_LINE, one_start_kmeans, shape_as_published
 from .robust.regroup import Group, explained, grown, regrouped
 from .robust.scatter import LEAST_SPREAD, SIGMAS, spread_across, spread_from_median, spread_of
@@ -140,7 +141,7 @@ def find_shapes(
     Returns
     -------
     Found
-        A list of ``Detection``, from left to right; empty when there is nothing.
+        A list of ``Detection``, from left to right, that carries also ``walls``, ``others`` and ``strays``.
 
     Raises
     ------
@@ -161,20 +162,28 @@ def find_shapes(
         check_count(n_shapes, points)
     if len(points) == 0 or n_shapes == 0:
         return Found()
-    points = points[np.lexsort((points[:, 1], points[:, 0]))]  # the order of seeing leaves no trace
     frame = Frame.of(points, resolution)
+    local = frame.local(points)
+    order = np.lexsort((local[:, 1], local[:, 0]))  # the order of seeing leaves no trace
+    points, local = points[order], local[order]
     group_rng, measure_rng = as_rng(rng).spawn(2)
     labels = steps.labels(points, n_shapes)
-    local = frame.local(points)
     if labels is None:
         labels = _groups(local, n_shapes, settings, group_rng)
     together = [local[labels == label] for label in range(labels.max() + 1)]
+    account = Account.of(points, local, frame, labels < 0)
     steps = steps.within(frame)
+    found: list[Thing] = []
     if settings.method == "published":
-        found = _as_published(together, settings, steps, measure_rng)
+        found += _as_published(together, settings, steps, measure_rng)
     else:
-        found = _jointly(together, n_shapes, settings, steps, {} if memory is None else memory, measure_rng)
-    return Found(sorted(map(frame.world, found), key=lambda d: tuple(d.shape.centroid)))
+        memory = {} if memory is None else memory
+        groups, margins = _jointly(together, n_shapes, settings, memory, measure_rng)
+        for group, margin in zip(groups, margins, strict=True):
+            for thing in things_of(group.choice, margin, account):
+                own = steps.remeasured(thing, SIGMAS * group.spread) if isinstance(thing, Detection) else thing
+                found += [] if own is None else [own]
+    return account.closed(found)
 
 
 def _points_on_cells(points: Grid | ArrayLike, resolution: float | None) -> tuple[Floats, float]:
@@ -197,10 +206,9 @@ def _jointly(
     together: list[Floats],
     n_shapes: int | None,
     settings: Settings,
-    steps: Steps,
     memory: Memory,
     rng: np.random.Generator,
-) -> list[Detection]:
+) -> tuple[list[Group], list[float]]:
     """Explain each group, and ask for a second opinion on the groups: the default way."""
     seed = int(rng.integers(2**63))
     used: Memory = {}
@@ -226,11 +234,7 @@ def _jointly(
         groups, margins = regrouped(groups, spread, n_shapes, explain=partial(explain, spread=spread))
     memory.clear()  # what was not used now will not come again: a map only grows
     memory.update(used)
-    found = []
-    for group, margin in zip(groups, margins, strict=True):
-        if (one := as_detection(group.choice)) is not None:
-            found.append(steps.remeasured(replace(one, count_margin=margin), SIGMAS * spread))
-    return [one for one in found if one is not None]
+    return groups, margins
 
 
 def _explain_all(

@@ -7,7 +7,16 @@ import pytest
 
 import primkit as pk
 from primkit.robust.candidates import candidates
-from primkit.robust.evidence import UNSEEN_COST, _cost, _length_cost, joint_cost, judged, judged_wall
+from primkit.robust.evidence import (
+    NAMELESS_COST,
+    NAMELESS_PART_COST,
+    UNSEEN_COST,
+    _cost,
+    _length_cost,
+    joint_cost,
+    judged,
+    judged_wall,
+)
 from primkit.robust.scatter import LEAST_SPREAD, NOWHERE, spread_across
 from tests.test_outlines import outline_of
 
@@ -61,7 +70,7 @@ def test_two_halves_together_cost_what_the_whole_costs():
     numbers = sum(_cost(0.0, np.tile([1.0, 3.0], 4) * 4, n, 0.0005) for n in (200, 200))
     numbers -= _cost(0.0, np.tile([1.0, 3.0], 4) * 4, 400, 0.0005)
     unseen = UNSEEN_COST * sum(2 * SQUARE.perimeter - 2 * h.length for h in halves) / 2
-    crooked = 20.0  # the price of four sides without right angles, paid once more
+    crooked = 2 * NAMELESS_PART_COST - NAMELESS_COST  # four sides without right angles, of which half was seen
     overlap = 2 * 400 * np.log(sum(h.length for h in halves) / SQUARE.perimeter)  # ends seen by both
     assert joint_cost(halves) - whole.cost == pytest.approx(numbers + unseen + crooked + overlap, abs=3)
     assert joint_cost([whole]) == whole.cost

@@ -23,7 +23,9 @@ from ..lines import Line
 from ..seen import REACH
 from ..shapes import Circle
 from .evidence import Candidate, judged, judged_wall
+from .free import free_outline
 from .guess import guess_outlines, guess_rectangles, line_guesses, one_side_more, ransac_lines
+from .lack_of_fit import lack_of_fit
 from .outlines import Outlines, joined
 from .refine import refine_hard, refine_soft, truncated_cost
 from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
@@ -41,6 +43,7 @@ WIDER = 0.005  # m: guesses are judged with a longer reach than fits, because th
 BLURRED = 0.002
 # A candidate that is this much worse (in cost) before the last polish is not going to win by it.
 CONTENDER = 100.0
+FITS, NEARLY_ALL = 10.0, 0.9  # lack of fit down to which a shape fits; share of the points, and of each side
 
 
 def candidates(
@@ -62,8 +65,9 @@ def candidates(
     Returns
     -------
     list of Candidate
-        A wall, a circle, and polygons of three to five sides, as far as each can be fitted; empty for fewer
-        than eight different points. Those that come near the best are fitted to the last digit.
+        A wall, a circle, and polygons of three to five sides, as far as each can be fitted, and where the best of
+        them does not fit, the best outline of any straight pieces; empty for fewer than eight different points. Those
+        that come near the best are fitted to the last digit.
     """
     if len(np.unique(points, axis=0)) < LEAST_POINTS:
         return []
@@ -74,7 +78,10 @@ def candidates(
     while waiting and waiting[0].cost <= min((c.cost for c in done), default=np.inf) + CONTENDER:
         polished = _polished(local, waiting.pop(0), spread, soft)
         done += [] if polished is None else [polished]
-    return [moved(c, middle) for c in sorted(done + waiting, key=lambda c: c.cost)]
+    ranked = sorted(done + waiting, key=lambda c: c.cost)
+    if ranked and not _fits(local, ranked[0], spread):
+        ranked = sorted([*ranked, *_free(local, spread)], key=lambda c: c.cost)
+    return [moved(c, middle) for c in ranked]
 
 
 def explained_again(
@@ -118,6 +125,26 @@ def _rough(points: Floats, spread: float, rng: np.random.Generator) -> list[Cand
     if circle is not None and circle.radius <= MOST_RADIUS:
         found.append(judged(points, circle, spread))
     return found + [judged(points, o, spread, square=square) for o, square in _polygons(some, lines, spread)]
+
+
+def free_candidate(points: Floats, spread: float) -> list[Candidate]:
+    """Return the outline of any straight pieces, judged; nothing where the points do not close."""
+    middle = points.mean(axis=0)
+    return [moved(c, middle) for c in _free(points - middle, spread)]
+
+
+def _fits(points: Floats, best: Candidate, spread: float) -> bool:
+    """Tell whether nearly all points lie on the best explanation, all around, and without any order in their misses."""
+    if best.figure is None or min(best.seen) < NEARLY_ALL or best.n_on < NEARLY_ALL * len(points):
+        return False
+    return lack_of_fit(points, best.figure, spread, square=best.square) >= FITS
+
+
+def _free(points: Floats, spread: float) -> Iterator[Candidate]:
+    """Yield the outline of any straight pieces."""
+    outline = free_outline(points, spread)
+    if outline is not None:
+        yield judged(points, outline, spread)
 
 
 def _polygons(points: Floats, lines: list[Line], spread: float) -> Iterator[tuple[Outlines, bool]]:
@@ -168,6 +195,8 @@ def polished(
     if isinstance(figure, Circle):
         circle = _polished_circle(points, figure, spread)
         return None if circle is None else _unless_short(judged(points, circle, spread), circle)
+    if not figure.sound()[0]:
+        return judged(points, figure, spread)  # a free outline is as good as it gets
     if soft:
         fit = refine_soft(points, figure, spread, square=square)
     else:

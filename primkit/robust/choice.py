@@ -15,10 +15,16 @@ from numpy.typing import NDArray
 from ..arguments import Floats
 from ..circles import straightened
 from ..shapes import Circle, Shape
-from .candidates import candidates
+from .candidates import candidates, free_candidate
 from .deviations import Certainty, certainty
 from .evidence import Candidate
+from .lack_of_fit import lack_of_fit
+from .outlines import LEAST_SIDE
 from .scatter import SIGMAS, noise_of
+
+CERTAIN = 10.0  # a margin of so much is very strong evidence (Kass and Raftery, 1995)
+MOST_ON_IT = 0.9  # share of the points; more off it may be something else
+MOST_SEEN = 0.75  # share of each side; behind more there may be something else
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,8 +85,43 @@ class Choice:
 
     @cached_property
     def margin(self) -> float:
-        """How much more the best of another kind costs; rivals that were not fitted are fitted when this is asked."""
+        """How much more the best rival costs: another kind, an outline of any straight pieces, or one that bends.
+
+        That boards seldom have shapes without a name is held against them by half. Rivals that were not fitted are
+        fitted when this is asked.
+        """
         best, rivals = self.ranked[0], self.ranked[1:]
         if self.at_a_glance:
             rivals = candidates(self.points, self.spread, soft=self.soft, rng=self.seed)
-        return next((other.cost for other in rivals if other.kind != best.kind), float("inf")) - best.cost
+        rivals = [*rivals, *free_candidate(self.points, self.spread)]
+        others = [rival.cost - rival.nameless / 2 for rival in rivals if rival.kind != best.kind]
+        margin = min(others, default=float("inf")) - best.cost
+        return margin if self.fit >= CERTAIN else min(margin, self.fit)
+
+    @cached_property
+    def fit(self) -> float:
+        """How much more the outline costs when it may bend: see ``lack_of_fit``; infinite without a shape."""
+        best = self.ranked[0] if self.ranked else None
+        if best is None or best.figure is None:
+            return float("inf")
+        middle = self.points.mean(axis=0)
+        return lack_of_fit(self.points - middle, best.figure.moved(-middle), self.spread, square=best.square)
+
+    @property
+    def certain(self) -> bool:
+        """Whether what it is, is beyond doubt.
+
+        Its margin says so (at a glance, the bounds of all others did); nearly all points lie on it, and nearly all of
+        it was seen; and it is so large that its kind can show.
+        """
+        best = self.ranked[0] if self.ranked else None
+        if best is None or best.shape is None:
+            return False
+        margin = self.fit if self.at_a_glance else self.margin
+        large = best.shape.dimensions[-1] if isinstance(best.shape, Circle) else best.shape.sides.min()
+        return bool(
+            margin >= CERTAIN
+            and self.on_it.mean() >= MOST_ON_IT
+            and min(best.seen) >= MOST_SEEN
+            and large >= LEAST_SIDE
+        )

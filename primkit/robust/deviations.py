@@ -80,7 +80,7 @@ def certainty(figure: Circle | Outlines, points: Floats, spread: float, *, squar
         return _of_circle(figure, points)
     seen = sides_seen(figure, points, spread)
     covariance = _of_sides(figure, points, spread, square)
-    rectangle = figure.polygon().kind == "rectangle"
+    rectangle = figure.kind == "rectangle"
     center, dimension = _derivatives(figure, rectangle)
     measured = _measured(figure, seen, square, rectangle)
     return Certainty(_std(center, covariance, np.full(2, seen.all())), _std(dimension, covariance, measured))
@@ -100,9 +100,12 @@ def sides_seen(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bo
     r = figure.distances(points)[0]
     t = figure.along(points)[0]
     begin, end = figure.spans()
-    well_inside = r < -CORNER_SPREADS * spread
-    of_no_other = np.count_nonzero(well_inside, axis=1) >= r.shape[1] - 1  # all sides but one, and that is the near one
-    own = (np.abs(r) <= SIGMAS * spread) & of_no_other[:, None]
+    room = CORNER_SPREADS * spread
+    if figure.convex:
+        of_no_other = np.count_nonzero(r < -room, axis=1) >= r.shape[1] - 1  # inside all sides but one, the near one
+        own = (np.abs(r) <= SIGMAS * spread) & of_no_other[:, None]
+    else:
+        own = (np.abs(r) <= SIGMAS * spread) & (t > begin + room) & (t < end - room)
     first, last = (
         np.where(own, t, np.inf).min(axis=0, initial=np.inf),
         np.where(own, t, -np.inf).max(axis=0, initial=-np.inf),

@@ -20,24 +20,25 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
 from ..arguments import Floats
 from ..lines import Line
 from ..seen import PLACES_PER_SIDE, REACH, places_between, shares_of
-from ..shapes import KINDS, Circle, Shape
+from ..shapes import Circle, Kind, Shape
 from .outlines import Outlines
 from .refine import shares
 from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
 
 # What is supposed before the points are looked at. Each number of a shape is known to about a centimetre. An outline
-# is seen nearly all around: each metre that was not seen is as unlikely as one in e^40. And four sides without right
-# angles are none of the board's shapes: one in e^10.
+# is seen nearly all around: each metre that was not seen is as unlikely as one in e^40. And an outline that is none of
+# the board's kinds is one in e^4, if it was seen all around, and else one in e^10.
 PRIOR_WIDTH = 0.01
 UNSEEN_COST = 80.0
-CROOKED_COST = 20.0
-
+NAMELESS_COST, NAMELESS_PART_COST = 8.0, 20.0
+WHOLE = 0.9  # share of each side
 
 # How uncertain N even points leave each fitted number, as a variance in units of spread^2 / N: a circle's centre and
 # radius; a side's offset and its angle (as a length, at the side's ends); a rectangle's four offsets and one angle; a
@@ -67,6 +68,8 @@ class Candidate:
         How many of the points lie on it; doubtful ones count in part.
     seen : tuple of float
         The share of each side (or of the whole circle) that has points near it; empty for a wall.
+    nameless : float
+        What of the cost is owed to its being none of the board's kinds.
     """
 
     figure: Circle | Outlines | None
@@ -75,6 +78,7 @@ class Candidate:
     length: float
     n_on: float
     seen: tuple[float, ...] = ()
+    nameless: float = 0.0
 
     @cached_property
     def shape(self) -> Shape | None:
@@ -82,10 +86,10 @@ class Candidate:
         return self.figure.polygon() if isinstance(self.figure, Outlines) else self.figure
 
     @property
-    def kind(self) -> str:
+    def kind(self) -> Kind | Literal["wall"]:
         """The shape's kind, or ``"wall"``."""
         if isinstance(self.figure, Outlines):
-            return KINDS[self.figure.angles.shape[1] - 2]
+            return self.figure.kind
         return "wall" if self.figure is None else "circle"
 
 
@@ -112,17 +116,17 @@ def judged(points: Floats, figure: Circle | Outlines, spread: float, *, square: 
         corners, after = figure.ends()
         lengths, k = np.hypot(*(after - corners)[0].T), corners.shape[1]
         places = places_between(corners[0], after[0])
-        fitted = OF_SQUARE if square else OF_FREE_SIDES[k]
-        distance = figure.distances(points)[0].max(axis=1)
+        fitted = OF_SQUARE if square else np.tile(OF_SIDE * k, k)  # a side has a kth of the points
+        distance = figure.distance(points)[0]
         share, _, each = shares(points, figure, spread)
         on_it, log_likelihood = float(share.sum()), float(each[0])
     seen = shares_of(places, points[np.abs(distance) <= SIGMAS * spread])
     length = float(lengths @ np.array(seen))
     cost = _cost(log_likelihood, fitted, len(points), spread) + _length_cost(on_it, length)
     cost += UNSEEN_COST * float(lengths.sum() - length)
-    if len(lengths) == 4 and not square:
-        cost += CROOKED_COST
-    return Candidate(figure, square, cost, length, on_it, seen)
+    named = isinstance(figure, Circle) or square or (figure.kind != "polygon" and len(lengths) != 4)
+    nameless = 0.0 if named else NAMELESS_COST if min(seen) >= WHOLE else NAMELESS_PART_COST
+    return Candidate(figure, square, cost + nameless, length, on_it, seen, nameless)
 
 
 def judged_wall(points: Floats, line: Line, length: float, spread: float) -> Candidate:

@@ -32,8 +32,9 @@ from ..arguments import Floats
 from ..circles import fit_circle
 from ..shapes import Circle
 from .candidates import BLURRED, CONTENDER, moved, polished, refined
-from .evidence import CROOKED_COST, OF_CIRCLE, OF_FREE_SIDES, OF_SQUARE, Candidate, judged, price
+from .evidence import NAMELESS_COST, OF_CIRCLE, OF_FREE_SIDES, OF_SQUARE, Candidate, judged, price
 from .guess import one_side_more
+from .lack_of_fit import lack_of_fit
 from .outlines import Outlines, joined
 from .refine import refine_hard
 from .scatter import SIGMAS
@@ -85,8 +86,10 @@ def at_a_glance(points: Floats, spread: float, *, soft: bool = True) -> Candidat
     if fit is None:
         return None
     best = polished(local, fit.figure, spread, soft=soft, square=fit.way.square)
-    if best is None or min(best.seen) < ALL_AROUND:
+    if best is None or best.figure is None or min(best.seen) < ALL_AROUND:
         return None
+    if lack_of_fit(local, best.figure, spread, square=best.square) < CERTAIN:
+        return None  # none of the kinds may do
     if any(_comes_near(local, rival, best, spread, soft) for rival in fit.rivals):
         return None
     return moved(best, middle)
@@ -176,7 +179,7 @@ def _ways(points: Floats, cuts: dict[int, Cut], spread: float) -> list[_Way]:
     straight = [
         _Way(cuts[4], True, OF_SQUARE, _cost(upright_squares, OF_SQUARE, n, spread)),
         _Way(cuts[3], False, OF_FREE_SIDES[3], least[3]),
-        _Way(cuts[4], False, OF_FREE_SIDES[4], least[4] + CROOKED_COST),
+        _Way(cuts[4], False, OF_FREE_SIDES[4], least[4] + NAMELESS_COST),
         _Way(cuts[5], False, OF_FREE_SIDES[5], least[5]),
     ]
     return [_round(points, cuts[5], min(way.least for way in straight), spread), *straight]

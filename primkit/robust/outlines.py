@@ -27,11 +27,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import Floats
-from ..shapes import Polygon
+from ..shapes import KINDS, NEARLY_RIGHT, Kind, Polygon
 
 # What a board can hold, and a sensor can tell: sides of at least 1.5 cm, corners that bend by 15 to 160 degrees.
 LEAST_SIDE = 0.015
 LEAST_TURN, MOST_TURN = np.radians(15), np.radians(160)
+LEAST_BEND, MOST_BEND = np.radians(8), np.radians(172)  # the same for outlines without a name
 QUARTERS = np.arange(4) * (np.pi / 2)  # the bearings of a rectangle's normals, from its first
 # Lines that bend by less than this (as a sine) meet far beyond any board; this keeps the corner finite.
 PARALLEL = 1e-12
@@ -104,6 +105,48 @@ class Outlines:
         once_round = np.abs(turn.sum(axis=1) - 2 * np.pi) < 1e-6
         bends = ((turn >= LEAST_TURN) & (turn <= MOST_TURN)).all(axis=1)
         return once_round & bends & (end - begin >= LEAST_SIDE).all(axis=1)
+
+    def closes(self, least: float) -> NDArray[np.bool_]:
+        """Tell which outlines run round once, convex or not, with corners that bend and no side below ``least`` [m]."""
+        turn = np.mod(_after(self.angles) - self.angles + np.pi, 2 * np.pi) - np.pi
+        begin, end = self.spans()
+        once_round = np.abs(turn.sum(axis=1) - 2 * np.pi) < 1e-6
+        bends = ((np.abs(turn) >= LEAST_BEND) & (np.abs(turn) <= MOST_BEND)).all(axis=1)
+        return once_round & bends & (end - begin >= least).all(axis=1)
+
+    @cached_property
+    def convex(self) -> bool:
+        """Whether the first outline bends one way only."""
+        return bool((np.mod(_after(self.angles[:1]) - self.angles[:1], 2 * np.pi) < np.pi).all())
+
+    @property
+    def kind(self) -> Kind:
+        """The first outline's kind, as ``Polygon.kind`` tells it."""
+        k, turn = self.angles.shape[1], _after(self.angles[:1]) - self.angles[:1]
+        right = np.abs(np.mod(turn, 2 * np.pi) - np.pi / 2).max() <= NEARLY_RIGHT
+        named = self.convex and (right if k == 4 else k in (3, 5))
+        return KINDS[k - 2] if named else "polygon"
+
+    def distance(self, points: Floats) -> Floats:
+        """Return how far each point is from each outline, shape (C, N), metres; from convex ones with its sign."""
+        if self.convex:
+            return self.distances(points).max(axis=2)
+        (begin, end), r, t = self.spans(), self.distances(points), self.along(points)
+        beyond = np.maximum(np.maximum(begin[:, None] - t, t - end[:, None]), 0.0)
+        return np.hypot(r, beyond).min(axis=2)
+
+    def places(self, points: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return each point's place along the first outline, how far outside it lies, and how far from a second side.
+
+        Shape (N,) each, metres.
+        """
+        (begin, end), r, t = self.spans(), self.distances(points)[0], self.along(points)[0]
+        beyond = np.maximum(np.maximum(begin[0] - t, t - end[0]), 0.0)
+        away, row = np.hypot(r, beyond), np.arange(len(points))
+        side, second = away.argmin(axis=1), np.partition(away, 1, axis=1)[:, 1]
+        lengths = (end - begin)[0]
+        place = (np.cumsum(lengths) - lengths)[side] + np.clip(t - begin[0], 0.0, lengths)[row, side]
+        return place, r[row, side], second
 
     def moved(self, offset: Floats) -> Outlines:
         """Return the outlines shifted by ``offset``, shape (2,), metres."""

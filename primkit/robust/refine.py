@@ -20,7 +20,10 @@ algorithm".
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from ..arguments import Floats
@@ -68,7 +71,14 @@ def refine_hard(points: Floats, guess: Outlines, reach: float, *, square: bool =
     return guess
 
 
-def refine_soft(points: Floats, guess: Outlines, spread: float, *, square: bool = False) -> Outlines:
+def refine_soft(
+    points: Floats,
+    guess: Outlines,
+    spread: float,
+    *,
+    square: bool = False,
+    sound: Callable[[Outlines], NDArray[np.bool_]] = Outlines.sound,
+) -> Outlines:
     """Give each point to all sides in the shares that its position makes likely, refit, repeat until settled.
 
     Around a corner nobody can say which side a noisy point came from. Giving it to the farther side, as
@@ -84,6 +94,8 @@ def refine_soft(points: Floats, guess: Outlines, spread: float, *, square: bool 
         Standard deviation of the points' distance from the outline, metres.
     square : bool
         Keep right angles (four sides).
+    sound : callable
+        Tells which outlines are such as are looked for.
 
     Returns
     -------
@@ -95,12 +107,13 @@ def refine_soft(points: Floats, guess: Outlines, spread: float, *, square: bool 
         for _ in range(2):
             share, told, _ = shares(points, steps[-1], spread)
             refined = refit(points, share * told, steps[-1], square=square)
-            if not refined.sound().all():
+            if not sound(refined).all():
                 return steps[-1]
             steps.append(refined)
             if np.abs(_as_rows(refined) - _as_rows(steps[-2])).max(initial=0.0) <= SETTLED:
                 return refined
-        guess = _leap(*steps)
+        far = _leap(*steps)
+        guess = far if sound(far).all() else steps[-1]
     return guess
 
 
@@ -115,8 +128,7 @@ def _leap(start: Outlines, one: Outlines, two: Outlines) -> Outlines:
     length = np.clip(length, 1.0, LONGEST_LEAP)  # of 1: no leap, just the two steps
     row = _as_rows(start) + 2 * length * before + length**2 * (after - before)
     k = row.shape[1] // 2
-    far = Outlines(row[:, :k], row[:, k:] / ROW_METRE)
-    return far if far.sound().all() else two
+    return Outlines(row[:, :k], row[:, k:] / ROW_METRE)
 
 
 def _as_rows(outlines: Outlines) -> Floats:

@@ -74,6 +74,15 @@ def noise_of(spread: float) -> float:
     return float(np.sqrt(max(spread**2 - LEAST_SPREAD**2, 0.0) / MEAN_ACROSS))
 
 
+def shared_rounding(spread: float) -> float:
+    """Return to what share neighbours along a side are rounded alike by the cells: noise shakes them apart.
+
+    >>> shared_rounding(LEAST_SPREAD), round(shared_rounding(spread_across(0.001)), 6)
+    (1.0, 0.0)
+    """
+    return float(np.exp(-((2 * np.pi / CELL) ** 2) * max(spread**2 - LEAST_SPREAD**2, 0.0)))
+
+
 def spread_from_median(median: float) -> float:
     """Return the spread of points whose median distance from their outlines this is, both metres.
 

@@ -52,7 +52,7 @@ class Cut:
     @cached_property
     def outline(self) -> Outlines:
         """The pieces' best lines, one row, their normals away from the origin; not always ``sound``."""
-        xx, yy, xy = _scatter(self.moments)
+        xx, yy, xy = scatter_sums(self.moments)
         angles = 0.5 * np.arctan2(2 * xy, xx - yy) + np.pi / 2  # across the direction of most scatter
         offsets = (np.cos(angles) * self.moments[1] + np.sin(angles) * self.moments[2]) / self.moments[0]
         return from_angle_order(np.where(offsets < 0, angles + np.pi, angles)[None], np.abs(offsets)[None])
@@ -80,8 +80,8 @@ def best_cuts(points: Floats) -> dict[int, Cut]:
     points = _from_farthest(points)
     n_knots = min(KNOTS, len(points))
     knots = np.arange(n_knots + 1) * len(points) // n_knots
-    moments = _moments_between(points, knots)
-    squares = np.where(_long_enough(points, knots), _squares(moments), np.inf)
+    moments = moments_between(points, knots)
+    squares = np.where(long_enough(points, knots), squares_of(moments), np.inf)
     best, last_cuts, cuts = squares[0], [], {}  # best[j]: the least squares of so many pieces that end at knot j
     for k in range(2, MOST + 1):
         longer = best[:, None] + squares
@@ -104,7 +104,7 @@ def _from_farthest(points: Floats) -> Floats:
     return np.concatenate([points[first:], points[:first]])
 
 
-def _moments_between(points: Floats, knots: NDArray[np.intp]) -> Floats:
+def moments_between(points: Floats, knots: NDArray[np.intp]) -> Floats:
     """Return the sums of 1, x, y, xx, yy and xy over the points of each piece, shape (6, M, M).
 
     A piece from one cut to another begins a knot after the first, and ends a knot before the second.
@@ -116,14 +116,14 @@ def _moments_between(points: Floats, knots: NDArray[np.intp]) -> Floats:
     return sums[:, None, :-1] - sums[:, 1:, None]
 
 
-def _long_enough(points: Floats, knots: NDArray[np.intp]) -> NDArray[np.bool_]:
+def long_enough(points: Floats, knots: NDArray[np.intp], least: float = LEAST_STRETCH) -> NDArray[np.bool_]:
     """Tell which pieces can be as long as a side must be: from the knot before them to the one after, shape (M, M)."""
     x, y = points[knots % len(points)].T
     chord = (x[1:] - x[:-1, None]) ** 2 + (y[1:] - y[:-1, None]) ** 2
-    return chord >= LEAST_STRETCH**2
+    return chord >= least**2
 
 
-def _scatter(moments: Floats) -> tuple[Floats, Floats, Floats]:
+def scatter_sums(moments: Floats) -> tuple[Floats, Floats, Floats]:
     """Return the scatter sums xx, yy and xy about the mean of each piece."""
     n, x, y, xx, yy, xy = moments
     n = np.maximum(n, 1.0)
@@ -131,9 +131,9 @@ def _scatter(moments: Floats) -> tuple[Floats, Floats, Floats]:
     return xx - x * mean_x, yy - y * mean_y, xy - x * mean_y
 
 
-def _squares(moments: Floats) -> Floats:
+def squares_of(moments: Floats) -> Floats:
     """Return the sum of squared distances from the best line of each piece; infinite where there is none."""
-    xx, yy, xy = _scatter(moments)
+    xx, yy, xy = scatter_sums(moments)
     across = (xx + yy - np.sqrt((xx - yy) ** 2 + 4 * xy**2)) / 2  # the smaller eigenvalue of the scatter matrix
     return np.where(moments[0] >= 2, np.maximum(across, 0.0), np.inf)
 

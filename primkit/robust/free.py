@@ -1,0 +1,220 @@
+"""Free: the best outline of straight pieces, whatever they make: an L, a star, a hexagon.
+
+The points of an outline have an order, even where bearings do not tell it: along a path from neighbour to neighbour. In
+that order the outline is cut into straight pieces so that
+
+    sum of squared distances / spread^2  +  PIECE_COST x number of pieces
+
+is the least of all ways, by dynamic programming; then all sides are fitted together. It is the rival of every shape
+with a name: what a free outline explains better is none of them.
+
+In:  points of one cluster, shape (N, 2), metres, around the origin, and how far points spread from outlines.
+Out: ``Outlines``, one row with as many sides as it takes; or ``None`` where the points are no closed outline.
+
+>>> from primkit.shapes import Polygon
+>>> ell = Polygon([(-0.1, -0.1), (0.1, -0.1), (0.1, -0.02), (-0.02, -0.02), (-0.02, 0.1), (-0.1, 0.1)])
+>>> free_outline(ell.outline(300), 0.0004).polygon().kind
+'polygon'
+>>> free_outline(ell.outline(300)[:200], 0.0004) is None
+True
+
+Sources: Bellman (1961), "On the approximation of curves by line segments using dynamic programming"; the number of
+pieces as Jackson et al. (2005), "An algorithm for optimal partitioning of data on an interval"; the path is the longest
+one in the minimum spanning tree, Kruskal (1956).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arguments import Floats
+from .evidence import judged
+from .outlines import Outlines
+from .refine import refine_soft
+from .scatter import CELL, SIGMAS
+from .starts import long_enough, moments_between, scatter_sums, squares_of
+
+BEAD_CELLS, BEAD_SPREADS = 3.0, 4.0  # neighbours this near are one bead of the path: then noise makes no detours
+MOST_BEADS = 300  # more are made larger: the tree's work goes with their number squared
+COMPANY, LEAST_COMPANY = 3.0, 3  # a bead with fewer points within three smallest beads is a stray
+AT_AN_END = 0.2  # of the path: there a stray may be its end, and is left out where that closes the path
+CLOSED_GAP = 0.04  # m: nearer ends close an outline: nearly twice as far as neighbours are linked
+KNOTS = 120  # cuts lie between two of so many places along the path
+PIECE_COST = 20.0  # about the price of a side's two numbers, see ``evidence.price``
+DEARER, TIMES_DEARER = 2.0, 4  # where pieces do not close, fewer are tried
+SIDE_CELLS, SIDE_SPREADS = 5.0, 2.0  # no side is shorter
+SHORT, FLAT_TURN = 3.0, np.radians(25)  # of the least side; where two pieces may be one
+LOOKS = 2  # strays lead cuts astray: once more without them
+FAR_SPREADS, FAR_CELLS = 9.0, 4.0  # what is farther from the first outline is a stray to the second
+
+
+def free_outline(points: Floats, spread: float) -> Outlines | None:
+    """Return the best outline of straight pieces around the points; None where they do not close.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        Metres, around the origin.
+    spread : float
+        Standard deviation of the points from the outline, metres.
+    """
+    least = max(SIDE_CELLS * CELL, SIDE_SPREADS * spread)
+    kept, found = points, None
+    for _ in range(LOOKS):
+        ordered = round_order(kept, spread)
+        starts = () if ordered is None else _outlines(ordered, spread, least)
+        start = next((o for o in starts if o.closes(least)[0]), None)
+        if start is None:
+            break
+        found = _pruned(
+            points, refine_soft(points, start, spread, sound=partial(Outlines.closes, least=least)), spread, least
+        )
+        distance = np.abs(found.distance(points)[0])
+        if (distance <= SIGMAS * spread).mean() >= 0.98:
+            break
+        kept = points[distance <= FAR_SPREADS * spread + FAR_CELLS * CELL]
+    return found if found is not None and crosses_nowhere(found) else None
+
+
+def crosses_nowhere(outline: Outlines) -> bool:
+    """Tell whether the first outline neither crosses nor touches itself."""
+    import shapely
+
+    return outline.convex or bool(shapely.LinearRing(outline.corners()[0]).is_simple)
+
+
+def _pruned(points: Floats, outline: Outlines, spread: float, least: float) -> Outlines:
+    """Return the outline without those of its sides that are not worth their price."""
+    cost = judged(points, outline, spread).cost
+    while outline.angles.shape[1] > 3:
+        begin, end = outline.spans()
+        turn = np.abs(np.mod(np.roll(outline.angles[0], -1) - outline.angles[0] + np.pi, 2 * np.pi) - np.pi)
+        doubtful = ((end - begin)[0] < SHORT * least) | (turn < FLAT_TURN) | (np.roll(turn, 1) < FLAT_TURN)
+        for side in np.flatnonzero(doubtful):
+            fewer = Outlines(np.delete(outline.angles, side, axis=1), np.delete(outline.offsets, side, axis=1))
+            if fewer.closes(least)[0]:
+                fewer = refine_soft(points, fewer, spread, sound=partial(Outlines.closes, least=least))
+                if (without := judged(points, fewer, spread).cost) < cost:
+                    outline, cost = fewer, without
+                    break
+        else:
+            break
+    return outline
+
+
+def round_order(points: Floats, spread: float) -> Floats | None:
+    """Return the points in their order around an outline, counter-clockwise and without strays; None if it is open."""
+    path = path_through(points, spread)
+    if path is None:
+        return None
+    n = max(1, int(AT_AN_END * len(path)))
+    gaps = np.hypot(*np.moveaxis(path[:n, None] - path[None, -n:], 2, 0))
+    first, last = np.unravel_index(int(gaps.argmin()), gaps.shape)
+    size = _bead_size(spread)
+    if gaps[first, last] > CLOSED_GAP + size:
+        return None
+    path = path[first : len(path) - n + int(last) + 1]
+    place, distance = _along(points, path)
+    near = distance <= size + SIGMAS * spread
+    ordered = points[near][np.argsort(place[near], kind="stable")]
+    x, y = ordered.T
+    return ordered if (x * np.roll(y, -1)).sum() > (np.roll(x, -1) * y).sum() else ordered[::-1]
+
+
+def path_through(points: Floats, spread: float) -> Floats | None:
+    """Return the longest path from neighbour to neighbour, shape (M, 2), metres; None for fewer than four beads."""
+    from scipy.sparse.csgraph import dijkstra, minimum_spanning_tree
+
+    size = _bead_size(spread)
+    beads, alone = _beads(points, size)
+    while len(beads) > MOST_BEADS:
+        size *= len(beads) / MOST_BEADS
+        beads, alone = _beads(points, size)
+    beads = beads[~alone]
+    if len(beads) < 4:
+        return None
+    apart = np.hypot(*np.moveaxis(beads[:, None] - beads, 2, 0))
+    tree = minimum_spanning_tree(apart)
+    end = int(np.argmax(dijkstra(tree, directed=False, indices=0)))
+    far, before = dijkstra(tree, directed=False, indices=end, return_predecessors=True)
+    path = [int(np.argmax(far))]
+    while path[-1] != end:
+        path.append(int(before[path[-1]]))
+    return beads[path]
+
+
+def _bead_size(spread: float) -> float:
+    """Return the side of the squares that beads come from, metres."""
+    return max(BEAD_CELLS * CELL, BEAD_SPREADS * spread)
+
+
+def _beads(points: Floats, size: float) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return the means of the points in squares of this size, shape (M, 2), and which of them are strays, (M,)."""
+    from scipy.spatial import cKDTree
+
+    ij = np.floor((points - points.min(axis=0, initial=np.inf)) / size).astype(np.int64)
+    square, n = np.unique(ij, axis=0, return_inverse=True, return_counts=True)[1:]
+    beads = np.column_stack([np.bincount(square, axis, len(n)) / n for axis in points.T])
+    near = cKDTree(points).query_ball_point(beads, max(COMPANY * BEAD_CELLS * CELL, size), return_length=True)
+    return beads, near < LEAST_COMPANY
+
+
+def _along(points: Floats, path: Floats) -> tuple[Floats, Floats]:
+    """Return where each point lies along a closed path, and how far from it, shape (N,) each, metres."""
+    edges = np.roll(path, -1, axis=0) - path
+    squared = np.maximum((edges**2).sum(axis=1), np.finfo(float).tiny)
+    offset = points[:, None] - path
+    share = np.clip((offset * edges).sum(axis=2) / squared, 0.0, 1.0)
+    distance = np.hypot(*np.moveaxis(offset - share[..., None] * edges, 2, 0))
+    nearest, row = distance.argmin(axis=1), np.arange(len(points))
+    lengths = np.sqrt(squared)
+    place = np.concatenate([[0.0], np.cumsum(lengths)])[nearest] + share[row, nearest] * lengths[nearest]
+    return place, distance[row, nearest]
+
+
+def _outlines(points: Floats, spread: float, least: float) -> Iterator[Outlines]:
+    """Yield outlines through points in order, of fewer and fewer pieces."""
+    points = np.roll(points, -int((points**2).sum(axis=1).argmax()), axis=0)  # the farthest point is a corner
+    for dearer in range(TIMES_DEARER):
+        price = PIECE_COST * DEARER**dearer
+        cuts, _ = _best_cut(points, spread, price, least)
+        if len(cuts) < 3:
+            return
+        points = np.roll(points, -int(cuts[len(cuts) // 2]), axis=0)  # once more, from a cut on the other side
+        cuts, pieces = _best_cut(points, spread, price, least)
+        if len(cuts) >= 3:
+            yield _joined_lines(points, cuts, pieces)
+
+
+def _best_cut(points: Floats, spread: float, price: float, least: float) -> tuple[NDArray[np.intp], Floats]:
+    """Return at which points the best pieces begin, shape (K,), and their sums, shape (6, K)."""
+    knots = np.arange(min(KNOTS, len(points)) + 1) * len(points) // min(KNOTS, len(points))
+    moments = moments_between(points, knots)
+    cost = np.where(long_enough(points, knots, least), squares_of(moments), np.inf) / spread**2 + price
+    best, begin = np.append(0.0, np.full(len(cost), np.inf)), [0]  # best[j]: the least cost up to knot j
+    for end in range(1, len(best)):
+        all_ways = best[:end] + cost[:end, end - 1]
+        begin.append(int(all_ways.argmin()))
+        best[end] = all_ways[begin[-1]]
+    if not np.isfinite(best[-1]):
+        return np.empty(0, dtype=np.intp), moments[:, :0, 0]
+    ends = [len(cost)]
+    while ends[-1] > 0:
+        ends.append(begin[ends[-1]])
+    at = np.array(ends[::-1])
+    return knots[at[:-1]], moments[:, at[:-1], at[1:] - 1]
+
+
+def _joined_lines(points: Floats, cuts: NDArray[np.intp], pieces: Floats) -> Outlines:
+    """Return the pieces' best lines as one outline, each with the outside on its right."""
+    _, x, y, *_ = pieces
+    xx, yy, xy = scatter_sums(pieces)
+    along = 0.5 * np.arctan2(2 * xy, xx - yy)
+    chord = points[np.append(cuts[1:], 0) - 1] - points[cuts]
+    backwards = np.cos(along) * chord[:, 0] + np.sin(along) * chord[:, 1] < 0
+    angles = along + np.where(backwards, np.pi / 2, -np.pi / 2)
+    return Outlines(angles[None], ((np.cos(angles) * x + np.sin(angles) * y) / pieces[0])[None])

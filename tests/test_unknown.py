@@ -1,0 +1,184 @@
+"""Unknown things: what is none of the kinds is measured as it is, or is not certain; what is certain may be trusted."""
+
+import numpy as np
+import pytest
+
+import primkit as pk
+from primkit.robust.free import free_outline, path_through
+from primkit.robust.lack_of_fit import lack_of_fit, sharpness
+from primkit.robust.outlines import Outlines
+from primkit.robust.scatter import LEAST_SPREAD, spread_across
+
+
+def regular(k, radius, inner=None):
+    angles = np.arange(k) * 2 * np.pi / k
+    radii = np.where(np.arange(k) % 2, radius if inner is None else inner, radius)
+    return radii[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def oval(width, height, power=2.0):
+    t = np.arange(160) * 2 * np.pi / 160
+    c, s = np.cos(t), np.sin(t)
+    return np.column_stack(
+        [width * np.sign(c) * np.abs(c) ** (2 / power), height * np.sign(s) * np.abs(s) ** (2 / power)]
+    )
+
+
+def bow(radius):
+    t = np.linspace(-np.pi / 2, np.pi / 2, 80)
+    return np.column_stack([radius * np.cos(t), radius * np.sin(t)])
+
+
+CORNERED = {
+    "hexagon": regular(6, 0.09),
+    "heptagon": regular(7, 0.09),
+    "octagon": regular(8, 0.1),
+    "star": regular(10, 0.1, 0.05),
+    "trapezoid": [(-0.1, -0.05), (0.1, -0.05), (0.05, 0.05), (-0.05, 0.05)],
+    "kite": [(0, -0.11), (0.07, 0.03), (0, 0.08), (-0.07, 0.03)],
+    "rhombus": [(-0.1, 0), (0, -0.06), (0.1, 0), (0, 0.06)],
+    "L": [(-0.08, -0.08), (0.08, -0.08), (0.08, -0.02), (-0.02, -0.02), (-0.02, 0.08), (-0.08, 0.08)],
+    "T": np.array([(-2, -8), (2, -8), (2, 3), (9, 3), (9, 8), (-9, 8), (-9, 3), (-2, 3)]) / 100,
+    "arrow": [(-0.1, -0.07), (0.1, 0), (-0.1, 0.07), (-0.05, 0)],
+    "a corner of 170 degrees": [(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (0, 0.0588), (-0.1, 0.05)],
+}
+CURVED = {
+    "ellipse 1.1": oval(0.077, 0.07),
+    "ellipse 1.3": oval(0.085, 0.065),
+    "ellipse 2": oval(0.1, 0.05),
+    "rounded square": oval(0.07, 0.07, 4),
+    "half disc": bow(0.08),
+}
+
+
+def seen(corners, seed, noise=0.0):
+    """The cells that the way-points' scans of one thing occupy, turned and shifted."""
+    rng = np.random.default_rng(seed)
+    thing = pk.Polygon(corners).moved(rng.uniform(-0.2, 0.2, 2), rng.uniform(0, 2 * np.pi))
+    world, grid = pk.World([thing]), pk.Grid()
+    grid.add(pk.scan(world, pk.teleport_poses(world), pk.Lidar(noise_std=noise), rng=rng))
+    return thing, grid
+
+
+def farthest_corner(found, thing):
+    return max(np.hypot(*(found.vertices - corner).T).min() for corner in thing.vertices)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.002], ids=["no noise", "2 mm"])
+@pytest.mark.parametrize("corners", CORNERED.values(), ids=CORNERED)
+def test_any_polygon_is_measured_corner_by_corner(corners, noise):
+    for seed in range(2):
+        thing, grid = seen(corners, 100 + seed, noise)
+        (one,) = pk.find_shapes(grid, rng=0)
+        assert one.kind == thing.kind
+        assert len(one.shape.vertices) == len(thing.vertices)
+        assert farthest_corner(one.shape, thing) < (0.002 if noise == 0 else 0.012)
+        assert one.certain or noise > 0
+        assert len(one.dimension_std) == len(one.shape.dimensions)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.002], ids=["no noise", "2 mm"])
+@pytest.mark.parametrize("corners", CURVED.values(), ids=CURVED)
+def test_what_is_curved_is_never_certain(corners, noise):
+    for seed in range(2):
+        _, grid = seen(corners, 200 + seed, noise)
+        assert not any(one.certain for one in pk.find_shapes(grid, rng=0))
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.002], ids=["no noise", "2 mm"])
+def test_the_four_kinds_are_certain(noise):
+    """Certainty is not bought by silence."""
+    certain = []
+    for seed in range(300, 306):
+        world = pk.random_world(4, style="free", rng=seed)
+        grid = pk.Grid()
+        grid.add(pk.scan(world, pk.teleport_poses(world), pk.Lidar(noise_std=noise), rng=seed))
+        certain += [one.certain for one in pk.find_shapes(grid, rng=0)]
+    assert np.mean(certain) >= 0.95
+
+
+def test_the_paper_is_never_certain():
+    ring = pk.Circle((0, 0), 0.06).outline(150)
+    (one,) = pk.find_shapes(ring, 1, settings=pk.PAPER, rng=0)
+    assert not one.certain
+
+
+SMALL = {
+    "a square of 8 mm": pk.Polygon([(0, 0), (0.008, 0), (0.008, 0.008), (0, 0.008)]).outline(32),
+    "a pentagon of radius 8 mm": pk.Polygon(regular(5, 0.008)).outline(40),
+    "strays within 3 mm": np.random.default_rng(0).uniform(-0.003, 0.003, (10, 2)),
+}
+
+
+@pytest.mark.parametrize("points", SMALL.values(), ids=SMALL)
+def test_what_is_too_small_to_tell_is_not_certain(points):
+    assert not any(one.certain for one in pk.find_shapes(points, rng=0))
+
+
+def test_half_an_outline_is_not_certain():
+    ring = pk.Circle((0, 0), 0.08).outline(300)
+    assert not any(one.certain for one in pk.find_shapes(ring[ring[:, 1] > 0], rng=0))
+
+
+# --- the parts ---------------------------------------------------------------------------------------------------
+
+
+def test_the_path_goes_once_round_whatever_the_order_of_the_points():
+    ell = pk.Polygon(CORNERED["L"]).outline(300)
+    path = path_through(np.random.default_rng(0).permutation(ell), LEAST_SPREAD)
+    steps = np.hypot(*np.diff(path, axis=0).T)
+    assert steps.max() < 0.01
+    assert steps.sum() == pytest.approx(pk.Polygon(CORNERED["L"]).perimeter, rel=0.05)
+
+
+@pytest.mark.parametrize("corners", CORNERED.values(), ids=CORNERED)
+def test_strays_lead_no_cut_astray(corners):
+    thing, rng = pk.Polygon(corners), np.random.default_rng(1)
+    middle = thing.outline(300).mean(axis=0)
+    points = np.vstack([thing.outline(300), middle + rng.uniform(-0.12, 0.12, (9, 2))]) - middle
+    outline = free_outline(points, LEAST_SPREAD)
+    assert farthest_corner(outline.polygon().moved(middle), thing) < 0.002
+
+
+@pytest.mark.parametrize("k", [0, 1, 2])
+def test_what_is_open_or_nearly_nothing_has_no_outline(k):
+    line = np.column_stack([np.linspace(-0.1, 0.1, 60), np.zeros(60)])
+    assert free_outline([line, line[:3], line[:0]][k].reshape(-1, 2), LEAST_SPREAD) is None
+
+
+def outline_of(polygon):
+    normals = polygon.normals
+    offsets = (normals * polygon.vertices).sum(axis=1)
+    return Outlines(np.arctan2(normals[:, 1], normals[:, 0])[None], offsets[None])
+
+
+def test_noise_alone_lets_hardly_any_outline_bend():
+    """Fit to pure noise, the statistic stays above 10 in 99 of 100."""
+    hexagon, rng = pk.Polygon(regular(6, 0.09)), np.random.default_rng(0)
+    points, spread = hexagon.outline(240), spread_across(0.002)
+    outward = outline_of(hexagon).places(points)
+    assert np.abs(outward[1]).max() < 1e-12
+    assert lack_of_fit(points, pk.Circle((0, 0), 0.2), spread) == 0, "no point is on it: nothing speaks for it"
+    ring = pk.Circle((0, 0), 0.09).outline(240)
+    fits = [
+        lack_of_fit(ring * (1 + rng.normal(0, spread, 240) / 0.09)[:, None], pk.Circle((0, 0), 0.09), spread)
+        for _ in range(300)
+    ]
+    assert np.mean(np.array(fits) >= 10) >= 0.98
+
+
+def test_corners_are_sharp_and_bends_are_not():
+    spread = LEAST_SPREAD
+    octagon = pk.Polygon(regular(8, 0.1))
+    assert sharpness(octagon.outline(300), outline_of(octagon), spread) > 100
+    tangents = pk.Polygon(regular(12, 0.1))
+    assert sharpness(pk.Circle((0, 0), 0.0983).outline(300), outline_of(tangents), spread) < 10
+
+
+def test_a_polygon_that_is_not_convex_has_its_distances():
+    ell = pk.Polygon(CORNERED["L"])
+    points = np.random.default_rng(0).uniform(-0.12, 0.12, (300, 2))
+    np.testing.assert_allclose(outline_of(ell).distance(points)[0], np.abs(ell.signed_distance(points)), atol=1e-12)
+    assert outline_of(ell).kind == "polygon"
+    assert outline_of(ell).closes(0.01)[0]
+    assert not outline_of(ell).sound()[0]
