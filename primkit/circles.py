@@ -40,10 +40,12 @@ GAUSS_NEWTON_STEPS = 50  # Gauss-Newton settles within five steps at 1 % noise, 
 def fit_circle(points: ArrayLike, method: Method = "geometric", *, weights: ArrayLike | None = None) -> Circle | None:
     """Return the circle that fits the points best.
 
+    Raises ValueError if points are not finite (N, 2), the method is unknown, or the weights are not N finite numbers,
+    zero or more.
+
     Parameters
     ----------
-    points : array_like, shape (N, 2)
-        Metres.
+    points : array_like, shape (N, 2), metres
     method : {"geometric", "taubin", "pratt", "kasa"}
         What "best" means; see the module's notes.
     weights : array_like, shape (N,), optional
@@ -53,11 +55,6 @@ def fit_circle(points: ArrayLike, method: Method = "geometric", *, weights: Arra
     -------
     Circle or None
         None when fewer than three different points are given or they lie on one line.
-
-    Raises
-    ------
-    ValueError
-        If points are not finite (N, 2), the method is unknown, or the weights are not N finite numbers >= 0.
 
     Notes
     -----
@@ -103,8 +100,7 @@ def find_circle(
 
     Parameters
     ----------
-    points : array_like, shape (N, 2)
-        Metres.
+    points : array_like, shape (N, 2), metres
     threshold : float
         A point agrees when it is at most this far from the circle, in metres.
     trials : int
@@ -112,8 +108,7 @@ def find_circle(
     refit : bool
         Fit the circle to its inliers; without it the circle goes through three of the points, as in the
         PyRANSAC library that the paper uses.
-    rng : int or numpy.random.Generator, optional
-        Seed or generator.
+    rng : seed or numpy.random.Generator, optional
 
     Examples
     --------
@@ -175,8 +170,7 @@ def nearer_circle(circle: Circle, points: Floats, weights: Floats) -> Circle | N
     ----------
     circle : Circle
         Near the solution: each step doubles the number of digits.
-    points : array, shape (N, 2)
-        Metres.
+    points : array, shape (N, 2), metres
     weights : array, shape (N,)
         How much each point counts.
     """

@@ -197,6 +197,8 @@ def evaluate(
 ) -> Report:
     """Compare what was found with the truth.
 
+    Raises ValueError if something else than shapes was found, or tolerance or gate is negative.
+
     Parameters
     ----------
     found : iterable of Detection, Circle and Polygon
@@ -212,11 +214,6 @@ def evaluate(
         (``Report.crashed``); see ``paper.published_values``. Tolerance and gate then play no part.
     gate : float
         A found shape whose centre is farther than this from a true one cannot stand for it, in metres.
-
-    Raises
-    ------
-    ValueError
-        If something else than shapes was found, or tolerance or gate is negative.
 
     Examples
     --------
@@ -259,15 +256,9 @@ def match(
 ) -> list[tuple[int, int]]:
     """Return pairs (index found, index true) with the least total centre distance, in the order of the true.
 
-    As many pairs as possible are made, each with its centres at most ``gate`` metres apart.
+    As many pairs as possible are made, each with its centres at most ``gate`` metres apart. Raises ValueError if the
+    gate is not a finite number >= 0.
 
-    Raises
-    ------
-    ValueError
-        If the gate is not a finite number >= 0.
-
-    Examples
-    --------
     >>> a, b = Circle((0, 0), 0.1), Circle((0.05, 0), 0.1)
     >>> match([b, a], [a, b])
     [(1, 0), (0, 1)]

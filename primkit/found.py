@@ -45,8 +45,6 @@ class Found(list[Detection]):
     strays : array, shape (N, 2)
         Points that lie on nothing, metres.
 
-    Examples
-    --------
     >>> Found([]) == [], Found([])[:1]
     (True, no shapes found)
     """

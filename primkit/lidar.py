@@ -58,6 +58,8 @@ FARTHEST_HIT, TWICE_ROUND, DEGREES = 1000.0, 4 * np.pi, 5.0
 class Lidar:
     """A LiDAR that turns once: the paper's, unless told otherwise.
 
+    Raises ValueError if an argument is out of its range.
+
     Parameters
     ----------
     beams : int
@@ -77,11 +79,6 @@ class Lidar:
         ``"exact"``: each beam meets the outline where geometry says. ``"webots"``: as the simulator of the paper's
         authors renders it, wrong by 1.7 mm (root mean square) along an outline, see ``rendered``; its beams spread over
         6.28 rad, the first one looks back, and no range equals ``range_max``.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of its range.
 
     Examples
     --------
@@ -133,10 +130,11 @@ class Lidar:
 class Scans:
     """What the LiDAR saw from each pose.
 
+    Raises ValueError if an array is none of these, a pose or an angle is not finite, or a range is NaN or below zero.
+
     Parameters
     ----------
-    poses : array, shape (P, 3)
-        x [m], y [m], heading [rad], world frame.
+    poses : array, shape (P, 3): x [m], y [m], heading [rad], world frame
     angles : array, shape (B,)
         Bearing of each beam from the heading, radians.
     ranges : array, shape (P, B)
@@ -144,11 +142,6 @@ class Scans:
         sensor's driver writes.
     inside : array of bool, shape (P,)
         Poses that lie in a shape: they see nothing, but for a rendered LiDAR, which sees the others.
-
-    Raises
-    ------
-    ValueError
-        If an array is none of these, a pose or an angle is not finite, or a range is NaN or below zero.
 
     Warns
     -----
@@ -222,8 +215,6 @@ def as_ranges(ranges: ArrayLike, range_max: float = np.inf) -> Floats:
     A hit lies above 0 and below the sensor's greatest range. NaN, 0, negative numbers, infinity and the greatest range
     itself are what drivers write for a beam that met nothing, or went wrong.
 
-    Examples
-    --------
     >>> as_ranges([0.2, 0.0, float("nan"), -1.0, 81.83, 81.82], range_max=81.83).tolist()
     [0.2, inf, inf, inf, inf, 81.82]
     """
@@ -262,22 +253,18 @@ def _checked_before(poses: Floats, angles: Floats, ranges: Floats, inside: Bools
 
 
 def scan(
-    world: World,
-    poses: ArrayLike,
-    lidar: Lidar | None = None,
-    *,
-    rng: int | np.random.Generator | None = None,
+    world: World, poses: ArrayLike, lidar: Lidar | None = None, *, rng: int | np.random.Generator | None = None
 ) -> Scans:
     """Scan the world once from each pose.
+
+    Raises ValueError if the poses are not finite or not of shape (P, 3).
 
     Parameters
     ----------
     world : World
-        What stands on the board.
     poses : array_like, shape (P, 3)
         x [m], y [m], heading [rad], world frame; one pose alone may have shape (3,).
-    lidar : Lidar, optional
-        The sensor; the paper's by default.
+    lidar : Lidar, default Lidar()
     rng : int or numpy.random.Generator, optional
         Seed or generator for noise, dropouts and spurious returns.
 
@@ -286,11 +273,6 @@ def scan(
     Scans
         A beam without a hit in range reads ``inf``. Noise is added first and the reading is then clipped
         to the sensor's limits. A pose inside a shape sees nothing, and ``Scans.inside`` says so.
-
-    Raises
-    ------
-    ValueError
-        If the poses are not finite or not of shape (P, 3).
 
     Examples
     --------
@@ -317,8 +299,9 @@ def scan_blocks(
 ) -> Iterator[Scans]:
     """Scan the world once from each pose, and hand out the scans block by block.
 
-    For more scans than memory holds: the ranges of a million take 800 MB, a block of ten thousand 8 MB. Together
-    the blocks are what ``scan`` returns, to the last bit, noise included.
+    For more scans than memory holds: the ranges of a million take 800 MB, a block of ten thousand 8 MB. Together the
+    blocks are what ``scan`` returns, to the last bit, noise included. Raises ValueError as ``scan``, or if the size is
+    not a whole number of at least 1; at once, not at the first block.
 
     Parameters
     ----------
@@ -331,11 +314,6 @@ def scan_blocks(
     -------
     iterator of Scans
         At least one, which is empty when there are no poses. Each is computed when it is asked for.
-
-    Raises
-    ------
-    ValueError
-        As ``scan``, or if the size is not a whole number of at least 1; at once, not at the first block.
 
     Examples
     --------

@@ -75,20 +75,16 @@ class FoundLine:
 def fit_line(points: ArrayLike) -> Line | None:
     """Return the line with the least squared distances to the points (total least squares).
 
+    Raises ValueError if points are not finite (N, 2).
+
     Parameters
     ----------
-    points : array_like, shape (N, 2)
-        Metres.
+    points : array_like, shape (N, 2), metres
 
     Returns
     -------
     Line or None
         None when fewer than two different points are given.
-
-    Raises
-    ------
-    ValueError
-        If points are not finite (N, 2).
 
     Examples
     --------
@@ -115,10 +111,11 @@ def find_lines(
 ) -> list[FoundLine]:
     """Return lines found one after the other, each on the points that the lines before it left.
 
+    Raises ValueError if points are not finite (N, 2), or another argument is out of its range.
+
     Parameters
     ----------
-    points : array_like, shape (N, 2)
-        Metres.
+    points : array_like, shape (N, 2), metres
     threshold : float
         A point lies on a line when it is at most this far from it, in metres.
     left_over : float
@@ -131,13 +128,7 @@ def find_lines(
         Fit each line to its inliers by least squares.
     model : Model, optional
         The line with a fit of your own; ``LINE`` by default.
-    rng : int or numpy.random.Generator, optional
-        Seed or generator.
-
-    Raises
-    ------
-    ValueError
-        If points are not finite (N, 2), or another argument is out of its range.
+    rng : seed or numpy.random.Generator, optional
 
     Notes
     -----

@@ -83,10 +83,12 @@ def run_ransac(
 ) -> Consensus | None:
     """Return the model with the largest consensus set among random samples.
 
+    Raises ValueError if points are not finite (N, 2), the threshold is negative, there is not at least one trial, or
+    the score is unknown.
+
     Parameters
     ----------
-    points : array_like, shape (N, 2)
-        Metres.
+    points : array_like, shape (N, 2), metres
     model : Model
         What is looked for: ``lines.LINE``, ``circles.CIRCLE`` or one of your own.
     threshold : float
@@ -98,19 +100,12 @@ def run_ransac(
         held at threshold^2, which also asks how well the inliers fit.
     refit : bool
         Fit the model to its inliers, and take the inliers anew, until nothing changes.
-    rng : int or numpy.random.Generator, optional
-        Seed or generator.
+    rng : seed or numpy.random.Generator, optional
 
     Returns
     -------
     Consensus or None
         None when there are fewer points than a sample needs, or every sample was degenerate.
-
-    Raises
-    ------
-    ValueError
-        If points are not finite (N, 2), the threshold is negative, there is not at least one trial, or the score
-        is unknown.
 
     Examples
     --------
@@ -156,16 +151,9 @@ def draw_samples(n: int, size: int, trials: int, rng: np.random.Generator) -> ND
 def trials_needed(inlier_share: float, sample_size: int, confidence: float = 0.99) -> int:
     """Return how many samples make it likely that one is all inliers.
 
-    ``N = log(1 - p) / log(1 - w^m)`` with confidence p, share of inliers w and sample size m (Fischler and
-    Bolles, 1981).
+    ``N = log(1 - p) / log(1 - w^m)`` with confidence p, share of inliers w and sample size m (Fischler and Bolles,
+    1981). Raises ValueError if the share is not above 0 and at most 1, or the confidence not between 0 and 1.
 
-    Raises
-    ------
-    ValueError
-        If the share is not above 0 and at most 1, or the confidence not between 0 and 1.
-
-    Examples
-    --------
     >>> trials_needed(0.5, 2), trials_needed(0.5, 3), trials_needed(1.0, 2)
     (17, 35, 1)
     """

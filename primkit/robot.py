@@ -51,8 +51,6 @@ def waypoints(size: float = 1.0) -> NDArray[np.float64]:
     x runs from ``-size/2`` in steps of 0.15 m up to ``size/2 - 0.1`` m, y from ``-size/2`` to ``size/2``
     in steps of 0.10 m, column by column; the heading is 0. A board of 1 m has 7 x 11 = 77 of them.
 
-    Examples
-    --------
     >>> waypoints()[[0, 1, -1]].round(3).tolist()
     [[-0.5, -0.5, 0.0], [-0.5, -0.4, 0.0], [0.4, 0.5, 0.0]]
     """
@@ -69,8 +67,6 @@ def published_poses(size: float = 1.0) -> Floats:
 
     It scans at those inside a shape, too, and its heading is 0.15 degrees.
 
-    Examples
-    --------
     >>> published_poses().shape
     (76, 3)
     """
@@ -93,8 +89,6 @@ def teleport_poses(world: World) -> NDArray[np.float64]:
     Those inside a shape are left out, and those nearer to a wall than the robot's radius; ``skipped_waypoints``
     returns them.
 
-    Examples
-    --------
     >>> from primkit.shapes import Circle
     >>> world = World([Circle((0.1, 0.0), 0.05)])
     >>> len(teleport_poses(world)), skipped_waypoints(world).round(3).tolist()
@@ -123,8 +117,7 @@ def moved(poses: ArrayLike, wheels: ArrayLike, time: float | NDArray[np.float64]
 
     Parameters
     ----------
-    poses : array_like, shape (..., 3)
-        x [m], y [m], heading [rad].
+    poses : array_like, shape (..., 3): x [m], y [m], heading [rad]
     wheels : array_like, shape (..., 2)
         Speeds of the left and the right wheel, radians per second.
     time : float or array_like, shape (...)
@@ -151,7 +144,6 @@ def clearance(world: World, places: NDArray[np.float64]) -> NDArray[np.float64]:
     Parameters
     ----------
     world : World
-        What stands on the board.
     places : array, shape (N, 2)
         The robot's x and y, metres.
 
@@ -170,23 +162,17 @@ def advance(world: World, pose: ArrayLike, wheels: ArrayLike, time: float = PERI
     """Return the robot's pose after its wheels have turned for a while, and whether something stopped it.
 
     It stops where its body would touch a shape or leave the board, at most a fifth of a millimetre before; its wheels
-    then slip, and it only turns.
+    then slip, and it only turns. Raises ValueError if an argument is out of its range, or the body is not clear to
+    begin with.
 
     Parameters
     ----------
     world : World
-        What stands on the board.
     pose : array_like, shape (3,)
         x [m], y [m], heading [rad]; the body must be clear of everything.
     wheels : array_like, shape (2,)
         Speeds of the left and the right wheel, radians per second, at most ``FASTEST`` either way.
-    time : float
-        Seconds.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of its range, or the body is not clear to begin with.
+    time : float, seconds
 
     Examples
     --------
@@ -217,10 +203,11 @@ def drive(
 ) -> NDArray[np.float64]:
     """Return the poses of a drive, shape (T + 1, 3): the start, and one after each pair of wheel speeds.
 
+    Raises ValueError if an argument is out of its range, or the body is not clear at the start.
+
     Parameters
     ----------
     world : World
-        What stands on the board.
     wheels : array_like, shape (T, 2)
         Speeds of the left and the right wheel, radians per second, at most 6.28 either way; each pair is
         held for a period.
@@ -228,11 +215,6 @@ def drive(
         x [m], y [m], heading [rad]; the free place nearest to the board's centre when not given.
     period : float
         Seconds between two scans.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of its range, or the body is not clear at the start.
 
     Examples
     --------
@@ -251,13 +233,8 @@ def drive(
 def start_pose(world: World) -> NDArray[np.float64]:
     """Return the free place nearest to the board's centre, on a grid of a centimetre, heading 0, shape (3,).
 
-    Raises
-    ------
-    ValueError
-        If the body has no room anywhere.
+    Raises ValueError if the body has no room anywhere.
 
-    Examples
-    --------
     >>> start_pose(World()).tolist()
     [0.0, 0.0, 0.0]
     """

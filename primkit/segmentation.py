@@ -49,10 +49,12 @@ def segment(
 ) -> Labels:
     """Return a label for each point: which group it belongs to.
 
+    Raises ValueError if points are not finite (N, 2), more shapes are asked for than there are different points, or any
+    number with linking.
+
     Parameters
     ----------
-    points : array_like, shape (N, 2)
-        Metres.
+    points : array_like, shape (N, 2), metres
     n_shapes : int, optional
         Number of groups. When it is not given, K-Means takes the number with the best silhouette; linking
         needs no number and takes none.
@@ -62,12 +64,6 @@ def segment(
         Side of the cells that the points lie on, metres: linking reaches over 22 of them.
     rng : int or numpy.random.Generator, optional
         Seed or generator for K-Means' starts.
-
-    Raises
-    ------
-    ValueError
-        If points are not finite (N, 2), more shapes are asked for than there are different points,
-        or any number with linking.
 
     Examples
     --------
@@ -99,10 +95,7 @@ def check_count(n_shapes: int, points: Floats, name: str = "n_shapes") -> None:
 def kmeans(points: ArrayLike, k: int, *, rng: int | np.random.Generator | None = None) -> Labels:
     """Return labels that make the k groups as compact as possible, shape (N,).
 
-    Raises
-    ------
-    ValueError
-        If k is below one or larger than the number of different points.
+    Raises ValueError if k is below one or larger than the number of different points.
 
     Notes
     -----
@@ -163,8 +156,7 @@ def link(points: ArrayLike, reach: float = LINK, neighbours: int = LINK_NEIGHBOU
 
     Parameters
     ----------
-    points : array_like, shape (N, 2)
-        Metres.
+    points : array_like, shape (N, 2), metres
     reach : float
         Two points this close or closer are neighbours, in metres.
     neighbours : int

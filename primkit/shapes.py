@@ -56,17 +56,14 @@ def _frozen(array: NDArray[np.float64]) -> NDArray[np.float64]:
 class Circle:
     """A circle.
 
+    Raises ValueError if the centre is not two finite numbers or the radius is not above zero.
+
     Parameters
     ----------
     center : array_like, shape (2,)
         Centre in metres, world frame.
     radius : float
         Radius in metres, greater than zero.
-
-    Raises
-    ------
-    ValueError
-        If the centre is not two finite numbers or the radius is not above zero.
 
     Examples
     --------
@@ -152,19 +149,14 @@ class Circle:
 class Polygon:
     """A simple polygon, convex or not, counter-clockwise.
 
-    Corners given clockwise are turned round (the first one stays first); a corner that repeats its
-    neighbour, as a closed ring's last one does, is dropped.
+    Corners given clockwise are turned round (the first one stays first); a corner that repeats its neighbour, as a
+    closed ring's last one does, is dropped. Raises ValueError if fewer than three corners are left, if three neighbours
+    lie on one line, or if the outline crosses or touches itself.
 
     Parameters
     ----------
     vertices : array_like, shape (K, 2)
         Corners in metres, world frame, in order around the outline.
-
-    Raises
-    ------
-    ValueError
-        If fewer than three corners are left, if three neighbours lie on one line, or if the outline crosses or
-        touches itself.
 
     Examples
     --------

@@ -34,6 +34,8 @@ from .shapes import Circle, Polygon
 class Steps:
     """Functions of your own for ``find_shapes``; a step that is not given is the library's.
 
+    Raises ValueError if a step is not a function.
+
     Parameters
     ----------
     segment : callable, optional
@@ -47,11 +49,6 @@ class Steps:
     fit_circle : callable, optional
         ``fit_circle(points)``: points of one circle, shape (N, 2), metres. Returns a ``Circle`` or three numbers
         (x, y, radius), or None when they fix none. It measures what was named a circle.
-
-    Raises
-    ------
-    ValueError
-        If a step is not a function.
 
     Notes
     -----

@@ -59,6 +59,9 @@ CORNERS = {"triangle": 3, "quadrilateral": 4, "pentagon": 5, "hexagon": 6}  # of
 class World:
     """A square board with shapes on it.
 
+    Raises ValueError if something other than a Circle or a Polygon is among the shapes, the size is not above zero, or
+    walls is neither True nor False.
+
     Parameters
     ----------
     shapes : iterable of Circle and Polygon
@@ -67,12 +70,6 @@ class World:
         Side of the board in metres; it spans ``[-size/2, size/2]`` both ways.
     walls : bool
         Whether the board's edge is a wall, which the LiDAR sees from inside. Outside, all is solid.
-
-    Raises
-    ------
-    ValueError
-        If something other than a Circle or a Polygon is among the shapes, the size is not above zero, or walls is
-        neither True nor False.
 
     Warns
     -----
@@ -196,6 +193,8 @@ def random_world(
 ) -> World:
     """Return a board with n random shapes that do not touch.
 
+    Raises ValueError if an argument is out of its range, or no room is found for n shapes with that gap.
+
     Parameters
     ----------
     n : int
@@ -218,11 +217,6 @@ def random_world(
         Whether there are walls around the board.
     rng : int or numpy.random.Generator, optional
         Seed or generator. The same seed gives the same world.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of its range, or no room is found for n shapes with that gap.
 
     Examples
     --------

@@ -69,12 +69,12 @@ EDGE_ON = 2 * CORNER_HIT
 def cast_rays(world: World, poses: ArrayLike, angles: ArrayLike, range_max: float = np.inf) -> Floats:
     """Return the exact distance from each pose along each beam to the first outline.
 
+    Raises ValueError if poses are not (P, 3), angles do not increase within one turn, or range_max is not above zero.
+
     Parameters
     ----------
     world : World
-        What stands on the board.
-    poses : array_like, shape (P, 3)
-        x [m], y [m], heading [rad], world frame.
+    poses : array_like, shape (P, 3): x [m], y [m], heading [rad], world frame
     angles : array_like, shape (B,)
         Bearings from the heading in radians, increasing, within one turn.
     range_max : float
@@ -84,11 +84,6 @@ def cast_rays(world: World, poses: ArrayLike, angles: ArrayLike, range_max: floa
     -------
     array, shape (P, B)
         Metres; ``inf`` where a beam meets nothing, and everywhere from a pose inside a shape.
-
-    Raises
-    ------
-    ValueError
-        If poses are not (P, 3), angles do not increase within one turn, or range_max is not above zero.
 
     Examples
     --------

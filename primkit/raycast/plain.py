@@ -32,9 +32,7 @@ def cast_plainly(world: World, poses: ArrayLike, angles: ArrayLike, range_max: f
     Parameters
     ----------
     world : World
-        What stands on the board.
-    poses : array_like, shape (P, 3)
-        x [m], y [m], heading [rad], world frame.
+    poses : array_like, shape (P, 3): x [m], y [m], heading [rad], world frame
     angles : array_like, shape (B,)
         Bearings from the heading in radians.
     range_max : float
