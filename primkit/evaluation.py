@@ -16,9 +16,8 @@ Out: ``Report``: which found shape stands for which true one, how far off each v
 
 A missed true shape is wrong in every part; a false alarm is one more wrong shape.
 
-``protocol="paper"`` repeats the published scoring, which is no measure of how right a method is: what is too small
-counts as right, and a shape of a wrong kind ends it before anything is written, so that only runs without one are in
-the published tables. Such a report has ``crashed``.
+``protocol="paper"`` repeats the published scoring, which is no measure of how right a method is: see ``evaluate``. A
+shape of a wrong kind ends it before anything is written: only runs without one are in the published tables.
 
 Sources: the weights are the paper's; the assignment is optimal, Kuhn (1955), "The Hungarian method".
 """
@@ -56,12 +55,10 @@ class Match:
     Parameters
     ----------
     found, true : Circle or Polygon
-        The pair.
     center_error : array, shape (2,)
         found - true, x and y, metres.
     dimension_error : tuple of float, or None
-        found - true for each dimension, metres; None when kinds or numbers of corners differ: there is nothing to
-        compare.
+        found - true for each, metres; None when kinds or numbers of corners differ: there is nothing to compare.
     center_right, dimension_right : tuple of bool
         Which of the values count as right.
     """
@@ -90,14 +87,10 @@ class Report:
 
     Parameters
     ----------
-    matches : tuple of Match
-        Pairs, in the order of the true shapes.
-    missed : tuple of Circle and Polygon
-        True shapes that nothing found stands for.
-    false_alarms : tuple of Circle and Polygon
-        Found shapes that stand for nothing.
-    tolerance : float
-        Metres.
+    matches : tuple of Match, in the order of the true shapes
+    missed, false_alarms : tuple of Circle and Polygon
+        True shapes that nothing found stands for; found shapes that stand for nothing.
+    tolerance : float, metres
     protocol : {"fair", "paper"}
         How it was scored.
     crashed : bool
@@ -203,8 +196,7 @@ def evaluate(
     ----------
     found : iterable of Detection, Circle and Polygon
         What ``find_shapes`` returned, or shapes of your own.
-    world : World
-        The truth.
+    world : World, the truth
     tolerance : float
         A value is right when it is at most this far from the truth, in metres.
     protocol : {"fair", "paper"}

@@ -1,7 +1,6 @@
 """Grid: the points that all scans have seen, on cells of one millimetre.
 
-Fifth step of the story. Scans of the same wall from many poses fall into the same cells, so that each
-place counts once, however often it was seen.
+Fifth step of the story. Scans of the same wall from many poses fall into the same cells: each place counts once.
 
 In:  ``Scans`` (any number of times), or (N, 2) points in metres.
 Out: ``grid.points()``: the centres of the occupied cells, shape (N, 2), metres, world frame.
@@ -37,17 +36,10 @@ ADDING = Lock()  # one for all grids, so that a grid can be copied: several thre
 
 
 class Grid:
-    """A set of occupied square cells.
+    """A set of occupied square cells with a side of ``resolution`` metres.
 
     Raises ValueError if the resolution is not a finite number above zero.
 
-    Parameters
-    ----------
-    resolution : float
-        Side of a cell in metres.
-
-    Examples
-    --------
     >>> grid = Grid()
     >>> len(grid), grid.points().shape
     (0, (0, 2))

@@ -169,9 +169,7 @@ def advance(world: World, pose: ArrayLike, wheels: ArrayLike, time: float = PERI
     return np.array([*poses[blocked[0], :2], poses[-1, 2]]), True
 
 
-def drive(
-    world: World, wheels: ArrayLike, start: ArrayLike | None = None, *, period: float = PERIOD
-) -> Floats:
+def drive(world: World, wheels: ArrayLike, start: ArrayLike | None = None, *, period: float = PERIOD) -> Floats:
     """Return the poses of a drive, shape (T + 1, 3): the start, and one after each pair of wheel speeds.
 
     Raises ValueError if an argument is out of its range, or the body is not clear at the start.

@@ -67,7 +67,6 @@ class World:
     walls : bool
         Whether the board's edge is a wall, which the LiDAR sees from inside. Outside, all is solid.
 
-
     Examples
     --------
     >>> World([Circle((0, 0), 0.1)]).shapes[0].kind
