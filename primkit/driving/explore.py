@@ -99,25 +99,19 @@ def explore(
     """Let the robot find its own way over the board until it has seen all of it.
 
     It stands still to scan and drives without scanning, on ways through what it has seen to be free. The world is used
-    for what the sensor measures and for what the body touches, for nothing else.
+    for what the sensor measures and for what the body touches, for nothing else. Raises ValueError if an argument is
+    out of its range, or the body is not clear at the start.
 
     Parameters
     ----------
     world : World
-        What stands on the board.
-    lidar : Lidar, optional
-        The sensor; the paper's by default.
+    lidar : Lidar, default Lidar()
     start : array_like, shape (3,), optional
         x [m], y [m], heading [rad]; the free place nearest to the board's centre when not given.
     rng : int or numpy.random.Generator, optional
         Seed or generator: the same seed gives the same exploration, to the last bit.
     most_scans : int
         It stops after so many.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of its range, or the body is not clear at the start.
 
     Examples
     --------

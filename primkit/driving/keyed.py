@@ -42,8 +42,6 @@ TURN_OF_A_KEY = WHEEL * 2 * TURN_SPEED / AXLE * PERIOD  # rad
 def published_drives() -> dict[str, Floats]:
     """Return the poses of the bundled drives, one on each map of ``published_suite``.
 
-    Examples
-    --------
     >>> len(published_drives()["1_circle"])
     115
     """
@@ -53,8 +51,6 @@ def published_drives() -> dict[str, Floats]:
 def press_keys(world: World, *, rng: int | np.random.Generator | None = None) -> str:
     """Return the keys that bring the robot around all shapes, from the paper's start on.
 
-    Examples
-    --------
     >>> press_keys(World(), rng=0)
     ''
     """

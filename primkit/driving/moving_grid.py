@@ -63,17 +63,14 @@ GONE_FIELDS = [("key", np.int64), ("seen", np.int64), ("until", np.int64)]
 class MovingGrid:
     """A set of occupied square cells, each of which holds until it is contradicted.
 
+    Raises ValueError if the resolution is not a finite number above zero, or the lidar is none.
+
     Parameters
     ----------
     resolution : float
         Side of a cell in metres.
     lidar : Lidar, optional
         The sensor, whose limits say what a beam without a hit means; the paper's by default.
-
-    Raises
-    ------
-    ValueError
-        If the resolution is not a finite number above zero, or the lidar is none.
 
     Examples
     --------
@@ -93,11 +90,8 @@ class MovingGrid:
     def add(self, seen: Scans | ArrayLike) -> None:
         """Give up the cells that scans contradict, and occupy those that their hits fall into; scan by scan.
 
-        Raises
-        ------
-        ValueError
-            If these are no Scans of the grid's lidar, or a hit is not finite or too far out; the grid then stays as
-            it was.
+        Raises ValueError if these are no Scans of the grid's lidar, or a hit is not finite or too far out; the grid
+        then stays as it was.
         """
         if not isinstance(seen, Scans):
             raise ValueError(f"a MovingGrid must be given Scans, whose beams clear cells, got {type(seen).__name__}")
@@ -153,15 +147,12 @@ class MovingGrid:
     def give_up(self, which: ArrayLike) -> None:
         """Give up cells for a reason of one's own, such as a shape that stands around them now.
 
+        Raises ValueError if there is not one truth value for each cell; the grid then stays as it was.
+
         Parameters
         ----------
         which : array_like of bool, shape (N,)
             Which of ``cells``.
-
-        Raises
-        ------
-        ValueError
-            If there is not one truth value for each cell; the grid then stays as it was.
 
         Examples
         --------

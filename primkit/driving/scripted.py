@@ -56,22 +56,17 @@ MOST_PERIODS = 20_000  # half an hour: a drive that is not over by then never is
 def scripted_route(world: World, *, rng: int | np.random.Generator | None = None) -> Route:
     """Return a drive around all shapes as a script steers it.
 
+    Raises ValueError if the robot has no room on the board.
+
     Parameters
     ----------
     world : World
-        What stands on the board.
-    rng : int or numpy.random.Generator, optional
-        Seed or generator.
+    rng : seed or numpy.random.Generator, optional
 
     Returns
     -------
     Route
         From the free place nearest to the board's centre; speeds in steps of 0.01 rad/s. The robot touches nothing.
-
-    Raises
-    ------
-    ValueError
-        If the robot has no room on the board.
 
     Examples
     --------

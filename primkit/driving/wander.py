@@ -34,21 +34,16 @@ def wander(
 ) -> Floats:
     """Return the poses of a smooth random drive that keeps clear of all outlines, shape (n_poses, 3).
 
+    Raises ValueError if the number or the clearance is out of its range, or no spot on the board is that clear.
+
     Parameters
     ----------
     world : World
-        What stands on the board.
     n_poses : int
         How many scans are made.
     clearance : float
         Least distance from every outline, metres.
-    rng : int or numpy.random.Generator, optional
-        Seed or generator.
-
-    Raises
-    ------
-    ValueError
-        If the number or the clearance is out of its range, or no spot on the board is that clear.
+    rng : seed or numpy.random.Generator, optional
 
     Examples
     --------

@@ -48,6 +48,8 @@ DRIVE_FORMAT, DRIVE_VERSION = "primkit drive", 1
 class Drive:
     """What was driven and what was seen on the way.
 
+    Raises ValueError if these do not fit together.
+
     Parameters
     ----------
     scans : Scans
@@ -55,13 +57,7 @@ class Drive:
     wheels : array_like, shape (P, 2)
         Speeds of the left and the right wheel that were held before each scan, radians per second; those before the
         first brought the robot to where the drive begins.
-    lidar : Lidar, optional
-        The sensor; the paper's by default.
-
-    Raises
-    ------
-    ValueError
-        If these do not fit together.
+    lidar : Lidar, default Lidar()
 
     Examples
     --------
@@ -167,8 +163,7 @@ def record_drive(path: StrPath, lidar: Lidar | None = None, *, replace: bool = F
     ----------
     path : str or path
         The file, ending in ``.jsonl``.
-    lidar : Lidar, optional
-        The sensor; the paper's by default.
+    lidar : Lidar, default Lidar()
     replace : bool
         Begin anew where there is a file already. Without it such a file is refused: it may hold the only record of a
         drive that broke off.

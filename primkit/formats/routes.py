@@ -31,19 +31,15 @@ ON_A_LINE = 8  # pairs of speeds
 class Route:
     """How the wheels were turned on a drive.
 
+    Raises ValueError if an argument is out of its range.
+
     Parameters
     ----------
-    start : array_like, shape (3,)
-        x [m], y [m], heading [rad], world frame.
+    start : array_like, shape (3,): x [m], y [m], heading [rad], world frame
     wheels : array_like, shape (T, 2)
         Speeds of the left and the right wheel, radians per second, at most 6.28 either way.
     period : float
         How long each pair is held, seconds.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of its range.
 
     Examples
     --------

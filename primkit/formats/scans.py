@@ -50,8 +50,7 @@ def save_scans(scans: Scans, path: StrPath) -> None:
     Raises
     ------
     ValueError
-        If the ending is another one, the arrays do not fit together, or they are larger than ``load_scans``
-        reads.
+        If the ending is another one, the arrays do not fit together, or they are larger than ``load_scans`` reads.
     OSError
         If the file cannot be written; the old one then stays as it was.
     """

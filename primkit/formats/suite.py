@@ -34,8 +34,7 @@ def paper_suite() -> dict[str, World]:
     Returns
     -------
     dict of str to World
-        ``"1-circle"``, ``"1-triangle"``, ``"1-rectangle"``, ``"1-pentagon"``, ``"2-01"`` to ``"4-10"``, in
-        this order.
+        ``"1-circle"``, ``"1-triangle"``, ``"1-rectangle"``, ``"1-pentagon"``, ``"2-01"`` to ``"4-10"``, in this order.
 
     Raises
     ------
@@ -77,8 +76,6 @@ def published_suite() -> dict[str, World]:
 def recorded_rows() -> list[dict[str, str]]:
     """Return the 68 rows that the paper's authors recorded, as they stand in the file: 34 maps, two movements.
 
-    Examples
-    --------
     >>> recorded_rows()[0]["map"], recorded_rows()[0]["seconds"]
     ('1_circle', '10.03')
     """
@@ -91,8 +88,6 @@ def bundled_keys() -> dict[str, str]:
 
     A rule pressed them, see ``driving.keyed``, and nobody.
 
-    Examples
-    --------
     >>> bundled_keys()["1_circle"][:4]
     'AAAA'
     """
