@@ -6,6 +6,7 @@ __version__: str
 from .shapes import Circle as Circle, Polygon as Polygon
 from .world import World as World, random_world as random_world
 from .robot import teleport_poses as teleport_poses, skipped_waypoints as skipped_waypoints, drive as drive
+from .robot import published_poses as published_poses
 from .raycast import cast_rays as cast_rays
 from .lidar import Lidar as Lidar, Scans as Scans, scan as scan, scan_blocks as scan_blocks
 from .grid import Grid as Grid
@@ -26,8 +27,8 @@ from .driving.scripted import scripted_route as scripted_route
 from .formats import load_world as load_world, save_world as save_world
 from .formats import load_scans as load_scans, save_scans as save_scans
 from .formats import Drive as Drive, record_drive as record_drive, load_drive as load_drive, save_drive as save_drive
-from .formats import paper_suite as paper_suite, scripted_drives as scripted_drives
-from .study import run_study as run_study, tables as tables
+from .formats import paper_suite as paper_suite, published_suite as published_suite, scripted_drives as scripted_drives
+from .study import run_study as run_study, repeat_study as repeat_study, tables as tables
 from .plots import plot_world as plot_world, plot_scan as plot_scan, plot_points as plot_points
 from .plots import plot_clusters as plot_clusters, plot_found as plot_found
 from .plots import plot_story as plot_story, plot_drive as plot_drive, save_figure as save_figure

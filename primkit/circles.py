@@ -24,7 +24,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arguments import Floats, as_floats, as_points
+from .arguments import Floats, as_floats, as_points, short
 from .ransac import Model, run_ransac
 from .shapes import Circle
 
@@ -71,7 +71,7 @@ def fit_circle(points: ArrayLike, method: Method = "geometric", *, weights: Arra
     """
     points = as_points(points)
     if method not in ("kasa", "pratt", "taubin", "geometric"):
-        raise ValueError(f"method must be geometric, taubin, pratt or kasa, got {method!r}")
+        raise ValueError(f"method must be geometric, taubin, pratt or kasa, got {short(method)}")
     w = _as_weights(weights, len(points))
     if np.count_nonzero(w) < 3:
         return None

@@ -16,6 +16,10 @@ Out: ``Report``: which found shape stands for which true one, how far off each v
 
 A missed true shape is wrong in every part; a false alarm is one more wrong shape.
 
+``protocol="paper"`` repeats the published scoring, which is no measure of how right a method is: what is too small
+counts as right, and a shape of a wrong kind ends it before anything is written, so that only runs without one are in
+the published tables. Such a report has ``crashed``.
+
 Sources: the weights are the paper's; the assignment is optimal, Kuhn (1955), "The Hungarian method".
 """
 
@@ -27,7 +31,7 @@ from typing import Literal
 
 import numpy as np
 
-from .arguments import ROUNDING, Floats, as_positive, check_type, doubt
+from .arguments import ROUNDING, Floats, as_positive, check_type, doubt, short
 from .measure import Detection
 from .paper import published_values
 from .shapes import Circle, Polygon, Shape
@@ -39,7 +43,8 @@ Protocol = Literal["fair", "paper"]
 SHAPE_WEIGHT, CENTER_WEIGHT, DIMENSION_WEIGHT = 0.4, 0.3, 0.3
 GATE = 0.10  # m: a shape whose centre is farther off than a large circle's radius is another shape
 
-# The published scoring: both sides rounded to 1 cm, right when found - true < 1 mm (without an absolute value).
+# The published scoring: both sides rounded to 1 cm, right when found - true < 1 mm (without an absolute value), and
+# accuracies to two decimals.
 PAPER_DIGITS = 2
 PAPER_TOLERANCE = 0.001
 
@@ -95,6 +100,10 @@ class Report:
         Metres.
     protocol : {"fair", "paper"}
         How it was scored.
+    crashed : bool
+        Whether the published scoring ends without a result, for a shape of a wrong kind: it looks for a dimension that
+        the true shape does not have. (A pentagon in the place of a rectangle passes.) All accuracies are then 0. What
+        it does when shapes are missing is not known; they count as wrong in every part.
     """
 
     matches: tuple[Match, ...]
@@ -102,34 +111,41 @@ class Report:
     false_alarms: tuple[Shape, ...]
     tolerance: float
     protocol: Protocol = "fair"
+    crashed: bool = False
 
     @property
     def shape_accuracy(self) -> float:
         """Matched shapes of the right kind / (true shapes + false alarms)."""
         wrong = len(self.missed) + len(self.false_alarms)
-        return _share([m.kind_right for m in self.matches], wrong, nothing=1.0)
+        return self._told(_share([m.kind_right for m in self.matches], wrong, nothing=1.0))
 
     @property
     def center_accuracy(self) -> float:
         """Coordinates within tolerance / (2 x true shapes)."""
         right = [r for m in self.matches for r in m.center_right]
-        return _share(right, 2 * len(self.missed), nothing=float(not self.false_alarms))
+        return self._told(_share(right, 2 * len(self.missed), nothing=float(not self.false_alarms)))
 
     @property
     def dimension_accuracy(self) -> float:
         """Dimensions within tolerance / dimensions of all true shapes."""
         right = [r for m in self.matches for r in m.dimension_right]
         missed = sum(_n_dimensions(s, self.protocol) for s in self.missed)
-        return _share(right, missed, nothing=float(not self.false_alarms))
+        return self._told(_share(right, missed, nothing=float(not self.false_alarms)))
 
     @property
     def weighted_accuracy(self) -> float:
         """0.4 shape + 0.3 centre + 0.3 dimension accuracy."""
-        return (
+        return self._told(
             SHAPE_WEIGHT * self.shape_accuracy
             + CENTER_WEIGHT * self.center_accuracy
             + DIMENSION_WEIGHT * self.dimension_accuracy
         )
+
+    def _told(self, accuracy: float) -> float:
+        """Return an accuracy as the protocol tells it: the published one rounds, and tells none of a crashed run."""
+        if self.protocol == "fair":
+            return accuracy
+        return 0.0 if self.crashed else round(accuracy, PAPER_DIGITS)
 
     @property
     def count_right(self) -> bool:
@@ -149,6 +165,8 @@ class Report:
 
     def scores(self) -> str:
         """Return the scores as one sentence."""
+        if self.crashed:
+            return "crashed: the published scoring ends at a shape of a wrong kind, and no accuracy is told"
         rule = f"within {1000 * self.tolerance:g} mm" if self.protocol == "fair" else "scored as published"
         return (
             f"weighted accuracy {self.weighted_accuracy:.3f} = 0.4 x shape {self.shape_accuracy:.3f}"
@@ -189,8 +207,9 @@ def evaluate(
         A value is right when it is at most this far from the truth, in metres.
     protocol : {"fair", "paper"}
         ``"fair"``: two-sided, unrounded, paired by the optimal assignment. ``"paper"``: as in the published
-        code, where both are rounded to 1 cm, every value that is too small counts as right, and pairs are
-        made in the order of kind and x; tolerance and gate then play no part.
+        code, where both are rounded to 1 cm, every value that is too small counts as right, pairs are made in the
+        order of kind and x, a rectangle's found height is compared with its true width, and a wrong kind ends it all
+        (``Report.crashed``); see ``paper.published_values``. Tolerance and gate then play no part.
     gate : float
         A found shape whose centre is farther than this from a true one cannot stand for it, in metres.
 
@@ -214,15 +233,16 @@ def evaluate(
     for name, value in (("tolerance", tolerance), ("gate", gate)):
         if value > world.size:
             doubt(f"{name} is {value:g} m on a board of {world.size:g} m: is it in millimetres?", depth=1)
-    shapes = [_as_shape(item) for item in found]
+    shapes, crashed = [_as_shape(item) for item in found], False
     if protocol == "fair":
         pairs = match(shapes, world.shapes, gate)
         compare = _compare_fairly
     elif protocol == "paper":
         pairs = _match_as_published(shapes, world.shapes)
         compare, tolerance = _compare_as_published, PAPER_TOLERANCE
+        crashed = any(not _values(shapes[f], False).keys() <= _values(world.shapes[t], True).keys() for f, t in pairs)
     else:
-        raise ValueError(f'protocol must be "fair" or "paper", got {protocol!r}')
+        raise ValueError(f'protocol must be "fair" or "paper", got {short(protocol)}')
     matched_found, matched_true = {f for f, _ in pairs}, {t for _, t in pairs}
     return Report(
         matches=tuple(compare(shapes[f], world.shapes[t], tolerance) for f, t in pairs),
@@ -230,6 +250,7 @@ def evaluate(
         false_alarms=tuple(s for i, s in enumerate(shapes) if i not in matched_found),
         tolerance=tolerance,
         protocol=protocol,
+        crashed=crashed,
     )
 
 
@@ -288,23 +309,30 @@ def _dimension_error(found: Shape, true: Shape) -> tuple[float, ...]:
 def _match_as_published(found: Sequence[Shape], true: Sequence[Shape]) -> list[tuple[int, int]]:
     """Pair the shapes in the order of kind and x, as the published code does."""
 
-    def in_order(shapes: Sequence[Shape]) -> list[int]:
-        return sorted(range(len(shapes)), key=lambda i: (shapes[i].kind, float(shapes[i].centroid[0])))
+    def in_order(shapes: Sequence[Shape], truth: bool) -> list[int]:
+        return sorted(range(len(shapes)), key=lambda i: (shapes[i].kind, _values(shapes[i], truth)["x"]))
 
-    return sorted(zip(in_order(found), in_order(true), strict=False), key=lambda p: p[1])
+    return sorted(zip(in_order(found, False), in_order(true, True), strict=False), key=lambda p: p[1])
 
 
 def _compare_as_published(found: Shape, true: Shape, tolerance: float) -> Match:
     """Compare as in the published code: rounded to 1 cm, and without an absolute value."""
-    our_center, ours = published_values(found, truth=False)
-    true_center, theirs = published_values(true, truth=True)
-    center = np.round(our_center, PAPER_DIGITS) - np.round(true_center, PAPER_DIGITS)
-    center_right = tuple((center < tolerance).tolist())
-    if found.kind != true.kind:
-        return Match(found, true, center, None, center_right, (False,) * len(theirs))
-    dimension = np.round(ours, PAPER_DIGITS) - np.round(theirs, PAPER_DIGITS)
-    right = tuple((dimension < tolerance).tolist())
-    return Match(found, true, center, tuple(dimension.tolist()), center_right, right)
+    ours, theirs = _values(found, False), _values(true, True)
+    errors = {name: ours[name] - theirs[name] for name in ours if name in theirs}
+    center, dimension = [errors.pop("x"), errors.pop("y")], tuple(errors.values())
+    return Match(
+        found,
+        true,
+        np.array(center),
+        dimension if found.kind == true.kind else None,
+        tuple(e < tolerance for e in center),
+        tuple(e < tolerance for e in dimension),
+    )
+
+
+def _values(shape: Shape, truth: bool) -> dict[str, float]:
+    """Return the numbers that the published scoring compares, rounded as it rounds them."""
+    return {name: round(value, PAPER_DIGITS) for name, value in published_values(shape, truth=truth).items()}
 
 
 def _as_shape(item: Detection | Shape) -> Shape:
@@ -315,7 +343,7 @@ def _as_shape(item: Detection | Shape) -> Shape:
 
 
 def _n_dimensions(shape: Shape, protocol: Protocol = "fair") -> int:
-    return len(published_values(shape, truth=True)[1] if protocol == "paper" else shape.dimensions)
+    return len(published_values(shape, truth=True)) - 2 if protocol == "paper" else len(shape.dimensions)
 
 
 def _within(errors: Iterable[float], tolerance: float) -> tuple[bool, ...]:

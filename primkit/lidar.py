@@ -20,9 +20,8 @@ Source: the sensor is that of the paper's section 3.1; field names follow the La
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from copy import deepcopy
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -35,13 +34,15 @@ from .arguments import (
     as_floats,
     as_poses,
     as_positive,
-    as_rng,
     as_share,
     check_type,
     doubt,
     limit,
+    short,
 )
+from .faults import Faults
 from .raycast import cast
+from .rendered import FIELD, LEAST_BEAMS, render, rendered_bearings
 from .show import thumbnail
 from .table import count
 from .world import World
@@ -72,6 +73,10 @@ class Lidar:
         Share of the hits that are lost (from 0 to 1).
     spurious : float
         Share of all beams that return a random range, whatever is there (from 0 to 1).
+    model : {"exact", "webots"}
+        ``"exact"``: each beam meets the outline where geometry says. ``"webots"``: as the simulator of the paper's
+        authors renders it, wrong by 1.7 mm (root mean square) along an outline, see ``rendered``; its beams spread over
+        6.28 rad, the first one looks back, and no range equals ``range_max``.
 
     Raises
     ------
@@ -82,6 +87,8 @@ class Lidar:
     --------
     >>> Lidar().angles[:3].round(4).tolist()
     [0.0, 0.0628, 0.1257]
+    >>> Lidar(model="webots").angles[:3].round(4).tolist()
+    [-3.1086, -3.0458, -2.983]
     """
 
     beams: int = 100
@@ -91,6 +98,7 @@ class Lidar:
     period: float = 0.1
     dropout: float = 0.0
     spurious: float = 0.0
+    model: Literal["exact", "webots"] = "exact"
 
     def __post_init__(self) -> None:
         limit(as_count(self.beams, "beams"), MOST_BEAMS, "beams must be at most {}")
@@ -103,15 +111,21 @@ class Lidar:
         for name, least in (("noise_std", self.range_max), ("range_max", FARTHEST_HIT)):
             if getattr(self, name) > least:
                 doubt(f"{name} is {getattr(self, name):g} m: is it in millimetres?", depth=2)
+        if self.model not in ("exact", "webots"):
+            raise ValueError(f'model must be "exact" or "webots", got {short(self.model)}')
+        if self.model == "webots" and self.beams < LEAST_BEAMS:
+            raise ValueError(f'model "webots" must have at least {LEAST_BEAMS} beams, got {self.beams}')
 
     @property
     def angle_increment(self) -> float:
         """Angle from one beam to the next, in radians."""
-        return 2 * np.pi / self.beams
+        return (2 * np.pi if self.model == "exact" else FIELD) / self.beams
 
     @property
     def angles(self) -> Floats:
-        """Bearing of each beam from the robot's heading, shape (B,), radians in [0, 2 pi)."""
+        """Bearing of each beam from the robot's heading, shape (B,), radians, increasing within a turn."""
+        if self.model == "webots":
+            return rendered_bearings(self.beams)
         return np.arange(self.beams, dtype=float) * self.angle_increment
 
 
@@ -129,7 +143,7 @@ class Scans:
         Measured distances in metres; ``inf`` or 0 where a beam met nothing. ``as_ranges`` makes them of what a
         sensor's driver writes.
     inside : array of bool, shape (P,)
-        Poses that lie in a shape: they see nothing.
+        Poses that lie in a shape: they see nothing, but for a rendered LiDAR, which sees the others.
 
     Raises
     ------
@@ -338,44 +352,16 @@ def _scanned(
     """Check the other arguments and return the blocks."""
     lidar = Lidar() if lidar is None else lidar
     check_type(lidar, Lidar, "lidar must be a Lidar, such as Lidar()")
-    faults = _Faults(lidar, len(poses), min(size, SCANS_AT_ONCE), rng)
+    faults = Faults(lidar, len(poses), min(size, SCANS_AT_ONCE), rng)
     starts = range(0, max(1, len(poses)), size)
     return (_block(world, poses[start : start + size], lidar, faults) for start in starts)
 
 
-def _block(world: World, poses: Floats, lidar: Lidar, faults: _Faults) -> Scans:
-    angles = lidar.angles
-    ranges, inside = cast(world, poses, angles, lidar.range_max, lidar.range_min)
+def _block(world: World, poses: Floats, lidar: Lidar, faults: Faults) -> Scans:
+    angles, look = lidar.angles, cast if lidar.model == "exact" else render
+    ranges, inside = look(world, poses, angles, lidar.range_max, lidar.range_min)
     for start in range(0, len(poses), SCANS_AT_ONCE):
         faults.disturb(ranges[start : start + SCANS_AT_ONCE])
-    ranges[inside] = np.inf
+    if lidar.model == "exact":
+        ranges[inside] = np.inf
     return _checked_before(poses, angles, ranges, inside)
-
-
-class _Faults:
-    """The sensor's faults, each with a stream of numbers of its own, for a few scans after the other."""
-
-    def __init__(self, lidar: Lidar, n_scans: int, few: int, rng: int | np.random.Generator | None) -> None:
-        self.lidar = lidar
-        if rng is None and not (lidar.noise_std or lidar.dropout or lidar.spurious):
-            return  # nothing is random: seeding takes longer than a scan
-        self.noise, self.losses, self.ghosts = as_rng(rng).spawn(3)
-        # Of the ghosts' stream, the first numbers say for each beam whether there is one, the rest where.
-        self.places = self.ghosts
-        if lidar.spurious > 0 and n_scans > few:
-            self.places = deepcopy(self.ghosts)
-            for start in range(0, n_scans, few):
-                self.places.random((min(few, n_scans - start), lidar.beams))
-
-    def disturb(self, ranges: Floats) -> None:
-        """Add the faults to exact ranges, in place; they are those of the next scans."""
-        lidar = self.lidar
-        if lidar.noise_std > 0:
-            noisy = ranges + self.noise.normal(0.0, lidar.noise_std, ranges.shape)
-            hit = np.isfinite(ranges)
-            ranges[hit] = np.clip(noisy[hit], lidar.range_min, lidar.range_max)
-        if lidar.dropout > 0:
-            ranges[self.losses.random(ranges.shape) < lidar.dropout] = np.inf
-        if lidar.spurious > 0:
-            ghost = self.ghosts.random(ranges.shape) < lidar.spurious
-            ranges[ghost] = self.places.uniform(lidar.range_min, lidar.range_max, int(ghost.sum()))

@@ -17,7 +17,7 @@ any rotation, and lets the likelihood decide between circle and polygon.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from functools import partial
 from typing import Literal
 
@@ -25,15 +25,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .account import Account, things_of
-from .arguments import Floats, as_count, as_points, as_positive, as_rng, as_share, check_type
+from .arguments import Floats, Labels, as_count, as_points, as_positive, as_rng, check_type, short
 from .found import Found
 from .grid import Grid
-from .lines import LINE, find_lines
 from .measure import CELL, Detection, Frame, Thing, detection
-from .paper import measure_as_published
+from .paper import CIRCLE_TRIALS, LINE_TRIALS, ON_LINE, one_start_kmeans, shape_as_published
 from .robust.regroup import Group, explained, grown, regrouped
 from .robust.scatter import LEAST_SPREAD, SIGMAS, spread_across, spread_from_median, spread_of
-from .segmentation import Grouping, check_count, segment
+from .segmentation import Grouping, check_count, count_by_silhouette, segment
 from .steps import Steps
 from .table import Table
 
@@ -63,13 +62,8 @@ class Settings:
         same shape, several times faster.
     noise_std : float, optional
         Standard deviation of the sensor's ranges in metres; found from the points when not given.
-    line_threshold : float
-        A point lies on a line when it is at most this far from it, metres on a grid of 1 mm: five cells, however
-        large they are. Only for ``"published"``, like all below.
     line_trials : int
-        Samples for each line.
-    left_over : float
-        Lines are sought until at most this share of a cluster's points is left.
+        Samples for each line. Only for ``"published"``, like the next.
     circle_trials : int
         Samples for a circle.
     """
@@ -80,21 +74,17 @@ class Settings:
     second_opinion: bool = True
     thorough: bool = False
     noise_std: float | None = None
-    line_threshold: float = 0.005
-    line_trials: int = 10_000
-    left_over: float = 0.1
-    circle_trials: int = 1000
+    line_trials: int = LINE_TRIALS
+    circle_trials: int = CIRCLE_TRIALS
 
     def __post_init__(self) -> None:
         if self.grouping not in ("link", "kmeans"):
-            raise ValueError(f'grouping must be "link" or "kmeans", got {self.grouping!r}')
+            raise ValueError(f'grouping must be "link" or "kmeans", got {short(self.grouping)}')
         if self.method not in ("joint", "published"):
-            raise ValueError(f'method must be "joint" or "published", got {self.method!r}')
+            raise ValueError(f'method must be "joint" or "published", got {short(self.method)}')
         if self.noise_std is not None:
             as_positive(self.noise_std, "noise_std", zero=True)
-        as_positive(self.line_threshold, "line_threshold", zero=True)
         as_count(self.line_trials, "line_trials")
-        as_share(self.left_over, "left_over", "between 0 and 1")
         as_count(self.circle_trials, "circle_trials")
 
     def __repr__(self) -> str:
@@ -106,7 +96,7 @@ class Settings:
 
     def _repr_html_(self) -> str:
         rows = [(name, str(value), str(getattr(ROBUST, name))) for name, value in asdict(self).items()]
-        lengths = "noise_std and line_threshold in metres; None: found from the points."
+        lengths = "noise_std in metres; None: found from the points."
         return Table(("setting", "value", "ROBUST"), rows, repr(self), (lengths,))._repr_html_()
 
 
@@ -180,8 +170,7 @@ def find_shapes(
     labels = steps.labels(points, n_shapes)
     own = labels is not None
     if labels is None:
-        asked = n_shapes if settings.grouping == "kmeans" else None
-        labels = segment(local, asked, method=settings.grouping, rng=group_rng)
+        labels = _groups(local, n_shapes, settings, group_rng)
     together = [local[labels == label] for label in range(labels.max() + 1)]
     account = Account.of(points, local, frame, 0 if own else np.count_nonzero(labels < 0))
     steps = steps.within(frame)
@@ -202,9 +191,16 @@ def _points_on_cells(points: Grid | ArrayLike, resolution: float | None) -> tupl
     """Return points, shape (N, 2), and the side of their cells, both metres."""
     if isinstance(points, Grid) or (hasattr(points, "resolution") and hasattr(points, "points")):  # a MovingGrid
         if resolution is not None:
-            raise ValueError(f"resolution must not be given with a grid, which knows its own, got {resolution!r}")
+            raise ValueError(f"resolution must not be given with a grid, which knows its own, got {short(resolution)}")
         return points.points(), points.resolution
     return as_points(points), CELL if resolution is None else as_positive(resolution, "resolution")
+
+
+def _groups(points: Floats, n_shapes: int | None, settings: Settings, rng: np.random.Generator) -> Labels:
+    """Return which points belong together; published measuring goes with K-Means from one start."""
+    if settings.grouping == "link" or settings.method == "joint":
+        return segment(points, n_shapes if settings.grouping == "kmeans" else None, method=settings.grouping, rng=rng)
+    return one_start_kmeans(points, count_by_silhouette(points, rng=rng) if n_shapes is None else n_shapes, rng)
 
 
 def _jointly(
@@ -277,16 +273,17 @@ def _spread_of_fits(groups: list[Group]) -> float | None:
 def _as_published(
     together: list[Floats], settings: Settings, steps: Steps, rng: np.random.Generator
 ) -> list[Detection]:
-    """Line after line, then extents and means: the paper's way."""
-    line_rng, circle_rng = rng.spawn(2)
-    reach, left_over, trials = settings.line_threshold, settings.left_over, settings.line_trials
-    own = steps.fit_line is not None
-    model = replace(LINE, fit=steps.line_params) if own else LINE
+    """Name and measure each cluster the paper's way."""
+    reach = ON_LINE * CELL
     found = []
-    for cluster in together:
-        lines = find_lines(cluster, reach, left_over=left_over, trials=trials, refit=own, model=model, rng=line_rng)
-        shape = measure_as_published(
-            cluster, len(lines), threshold=reach, trials=settings.circle_trials, rng=circle_rng
+    for cluster in sorted(filter(len, together), key=lambda points: tuple(points.mean(axis=0))):
+        shape = shape_as_published(
+            cluster,
+            line_trials=settings.line_trials,
+            circle_trials=settings.circle_trials,
+            fit_line=None if steps.fit_line is None else steps.line,
+            resolution=CELL,
+            rng=rng,
         )
         if shape is not None:
             found.append(steps.remeasured(detection(shape, cluster, reach), reach, sides=False))

@@ -26,7 +26,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import ROUNDING, Floats, as_count, as_points, as_positive, as_rng, as_share, check_type, limit
+from .arguments import ROUNDING, Floats, as_count, as_points, as_positive, as_rng, as_share, check_type, limit, short
 
 RESIDUALS_AT_ONCE = 250_000  # residuals in one block of the matrix: 2 MB, about the size of a core's cache
 MOST_TRIALS = 1_000_000  # all are drawn at once: 50 MB of samples of three points
@@ -125,7 +125,7 @@ def run_ransac(
     threshold, trials = as_positive(threshold, "threshold", zero=True), as_count(trials, "trials")
     limit(trials, MOST_TRIALS, "trials must be at most {}", "see trials_needed")
     if score not in ("count", "truncated"):
-        raise ValueError(f'score must be "count" or "truncated", got {score!r}')
+        raise ValueError(f'score must be "count" or "truncated", got {short(score)}')
     if len(points) < model.sample_size:
         return None
     samples = draw_samples(len(points), model.sample_size, trials, as_rng(rng))

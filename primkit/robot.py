@@ -25,7 +25,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import as_point, as_points, as_poses, as_positive, check_type, limit, short
+from .arguments import Floats, as_point, as_points, as_poses, as_positive, check_type, limit, short
 from .world import World
 
 STEP_X = 0.15  # m between way-points along x
@@ -36,6 +36,7 @@ WHEEL = 0.0205  # m: radius of a wheel
 AXLE = 0.052  # m from wheel to wheel
 FASTEST = 6.28  # rad/s: a wheel's greatest speed
 BODY = 0.037  # m: radius of the body, a disc around the middle of the axle
+PUBLISHED_HEADING = np.radians(0.15)  # in all of the paper's runs
 PERIOD = 0.1  # s: wheels keep their speeds from one scan to the next
 # m: the way is looked at in steps of this length, and the body keeps this far from everything: between two clear places
 # that lie so close together nothing can be touched.
@@ -61,6 +62,21 @@ def waypoints(size: float = 1.0) -> NDArray[np.float64]:
     rows = np.arange(np.floor(2 * half / STEP_Y + 1e-9) + 1)
     x, y = np.meshgrid(-half + STEP_X * columns, -half + STEP_Y * rows, indexing="ij")
     return np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
+
+
+def published_poses(size: float = 1.0) -> Floats:
+    """Return where the paper's robot scans when it is set down, shape (P, 3): all way-points but the first.
+
+    It scans at those inside a shape, too, and its heading is 0.15 degrees.
+
+    Examples
+    --------
+    >>> published_poses().shape
+    (76, 3)
+    """
+    poses = waypoints(size)[1:]
+    poses[:, 2] = PUBLISHED_HEADING
+    return poses
 
 
 def inside_shape(world: World, poses: NDArray[np.float64]) -> NDArray[np.bool_]:

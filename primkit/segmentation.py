@@ -23,7 +23,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import ROUNDING, Floats, Labels, as_count, as_points, as_positive, as_rng
+from .arguments import ROUNDING, Floats, Labels, as_count, as_points, as_positive, as_rng, short
 
 Grouping = Literal["kmeans", "link"]
 
@@ -76,7 +76,7 @@ def segment(
     """
     points = as_points(points)
     if method not in ("kmeans", "link"):
-        raise ValueError(f'method must be "kmeans" or "link", got {method!r}')
+        raise ValueError(f'method must be "kmeans" or "link", got {short(method)}')
     if n_shapes is not None:
         check_count(n_shapes, points)
         if method == "link":

@@ -301,7 +301,9 @@ class Polygon:
         return hash(tuple(self.vertices.ravel().tolist()))  # not of the bytes: -0.0 equals 0.0
 
     def __repr__(self) -> str:
-        return f"Polygon([{_listed(self.vertices)}])"
+        few = len(self.vertices) <= SHOWN_CORNERS
+        pairs = ", ".join(map(_pair, self.vertices if few else self.vertices[:3]))
+        return f"Polygon([{pairs}{'' if few else f', ... {len(self.vertices)} corners'}])"
 
 
 Shape = Circle | Polygon
@@ -326,7 +328,7 @@ def turns_of(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return how far a ring of corners bends at each, to the left, shape (K,), radians in (-pi, pi].
 
     >>> np.degrees(turns_of(np.array([(0, 0), (2, 1), (0, 2), (1, 1)]))).round().tolist()
-    [108.0, 127.0, 108.0, -90.0]
+    [162.0, 127.0, 162.0, -90.0]
     """
     edges = _next(corners) - corners
     before = np.concatenate([edges[-1:], edges[:-1]])
@@ -344,23 +346,10 @@ def _counter_clockwise(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     # An outline that does not cross itself turns round once, 2 pi in all; one that bends one way only is simple then.
     convex = abs(abs(turns.sum()) - 2 * np.pi) < 1e-6 and (np.all(turns > 0) or np.all(turns < 0))
     if not convex:
-        _check_simple(corners)
+        import shapely
+
+        told = shapely.is_valid_reason(shapely.Polygon(corners))  # such as "Self-intersection[0.5 0.5]"
+        if "[" in told:
+            x, y = map(float, told.partition("[")[2].rstrip("]").split())
+            raise ValueError(f"a polygon must not cross or touch itself, got a meeting at ({x:.6g}, {y:.6g})")
     return corners if turns.sum() > 0 else np.roll(corners[::-1], 1, axis=0)
-
-
-def _check_simple(corners: NDArray[np.float64]) -> None:
-    """Refuse an outline that crosses or touches itself, and name one place where it does."""
-    import shapely
-
-    ring = shapely.Polygon(corners)
-    if not ring.is_valid:
-        place = shapely.is_valid_reason(ring).partition("[")[2].rstrip("]")  # such as "Self-intersection[0.5 0.5]"
-        x, y = map(float, place.split())
-        raise ValueError(f"a polygon must not cross or touch itself, got a meeting at ({x:.6g}, {y:.6g})")
-
-
-def _listed(corners: NDArray[np.float64]) -> str:
-    """Write corners for reading: all of a few, the first three of many."""
-    if len(corners) <= SHOWN_CORNERS:
-        return ", ".join(map(_pair, corners))
-    return f"{', '.join(map(_pair, corners[:3]))}, ... {len(corners)} corners"

@@ -121,11 +121,6 @@ class Steps:
             raise ValueError(f"{rule}, with a radius > 0, got {short(circle)}")
         return Circle((x, y), radius)
 
-    def line_params(self, points: Floats) -> Floats:
-        """Return the own line as RANSAC wants it: (angle, offset), shape (2,); NaN for none."""
-        line = self.line(points)
-        return np.full(2, np.nan) if line is None else np.array([line.angle, line.offset])
-
     def remeasured(self, found: Detection, reach: float, *, sides: bool = True) -> Detection | None:
         """Return the detection measured with the own fits; None when they find nothing.
 
@@ -157,15 +152,41 @@ class Steps:
                 return None
             lines.append(line)
         try:
-            return Polygon(
-                np.array([_meet(before, line) for before, line in zip([lines[-1], *lines[:-1]], lines, strict=True)])
-            )
+            corners = [_meet(before, line) for before, line in zip([lines[-1], *lines[:-1]], lines, strict=True)]
+            return kept_kind(Polygon(np.array(corners)), polygon)
         except ValueError:
             x, y = polygon.centroid
             raise ValueError(
                 f"fit_line's lines along the {polygon.kind} near ({x:.3f}, {y:.3f}) must meet in its corners, "
                 f"got angles {', '.join(f'{line.angle:.3g}' for line in lines)}"
             ) from None
+
+
+def kept_kind(fitted: Polygon, before: Polygon) -> Polygon:
+    """Return a polygon whose sides were fitted one by one as the kind that it was before.
+
+    A rectangle's right angles are put right; centroid, mean direction and mean lengths of opposite sides stay.
+
+    Raises
+    ------
+    ValueError
+        If the two do not bend the same way at each corner in turn.
+
+    Examples
+    --------
+    >>> crooked = Polygon([(0, 0), (80, 0), (80, 44), (0, 40)])
+    >>> crooked.kind, kept_kind(crooked, Polygon([(0, 0), (80, 0), (80, 40), (0, 40)])).kind
+    ('polygon', 'rectangle')
+    """
+    if not np.array_equal(np.sign(fitted.turns), np.sign(before.turns)):
+        raise ValueError(f"the {before.kind}'s sides must bend as before at each corner")
+    if before.kind != "rectangle":
+        return fitted
+    width, height = (fitted.edges[:2] - fitted.edges[2:]) / 2
+    along = width / np.hypot(*width) + [height[1], -height[0]] / np.hypot(*height)
+    axes = np.array([along, [-along[1], along[0]]]) / np.hypot(*along)
+    half = (fitted.sides[:2] + fitted.sides[2:]) / 4
+    return Polygon(fitted.centroid + np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * half @ axes)
 
 
 def nearest_side(polygon: Polygon, points: Floats) -> Labels:

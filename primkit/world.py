@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, islice
 from typing import Literal
 
 import numpy as np
@@ -44,7 +44,8 @@ LEAST_SIDE = 0.04
 
 TRIES_PER_SHAPE = 300  # a shape that found no room in this many tries will hardly find any
 TRIES_PER_WORLD = 20
-MOST_DRAWN = 1000  # shapes of a random world: each is measured to all before it
+MOST_COMPARED = 1000  # pairs of shapes whose boxes meet, of which one may lie on the other
+MOST_RANDOM = 1000  # shapes of a random world: each is measured to all before it
 
 Style = Literal["paper", "free", "any"]
 STYLES: tuple[Style, ...] = ("paper", "free", "any")
@@ -138,26 +139,34 @@ class World:
 
 def _misplaced(shapes: Sequence[Shape], size: float) -> str:
     """Return a sentence on the first shape that lies wholly off the board or on another one; empty if none does."""
-    corners = [shape.center if isinstance(shape, Circle) else shape.vertices for shape in shapes]
-    around = [shape.radius if isinstance(shape, Circle) else 0.0 for shape in shapes]
-    low = np.array([np.min(np.atleast_2d(c), axis=0) - r for c, r in zip(corners, around, strict=True)]).reshape(-1, 2)
-    high = np.array([np.max(np.atleast_2d(c), axis=0) + r for c, r in zip(corners, around, strict=True)]).reshape(-1, 2)
+    boxes = [
+        (s.center - s.radius, s.center + s.radius)
+        if isinstance(s, Circle)
+        else (s.vertices.min(axis=0), s.vertices.max(axis=0))
+        for s in shapes
+    ]
+    low, high = np.array(boxes).reshape(-1, 2, 2).transpose(1, 0, 2)
     off = ((low > size / 2) | (high < -size / 2)).any(axis=1)
     if off.any():
         return f"{shapes[int(np.argmax(off))]} lies off the board of {size:g} m: is it in millimetres?"
     order = np.argsort(low[:, 0], kind="stable")
-    for place, a in enumerate(order):
-        for b in order[place + 1 :]:
-            if low[b, 0] > high[a, 0]:
-                break
-            if (low[b, 1] < high[a, 1]) and (low[a, 1] < high[b, 1]):
-                depth = min(
-                    shapes[a].signed_distance(shapes[b].outline(40)).min(),
-                    shapes[b].signed_distance(shapes[a].outline(40)).min(),
-                )
-                if depth < -0.01 * min(shapes[a].reach, shapes[b].reach):
-                    return f"{shapes[a]} and {shapes[b]} lie on each other"
+    low, high = low[order], high[order]
+    stops = np.searchsorted(low[:, 0], high[:, 0])
+    near = (
+        (shapes[order[i]], shapes[order[i + 1 + j]])
+        for i, stop in enumerate(stops)
+        for j in np.flatnonzero((low[i + 1 : stop, 1] < high[i, 1]) & (high[i + 1 : stop, 1] > low[i, 1]))
+    )
+    for a, b in islice(near, MOST_COMPARED):
+        if _lies_on(a, b) or _lies_on(b, a):
+            return f"{a} and {b} lie on each other"
     return ""
+
+
+def _lies_on(a: Shape, b: Shape) -> bool:
+    """Tell whether the middle of ``a`` or a piece of its outline lies inside ``b``, and not just at its edge."""
+    points = np.vstack([a.outline(40), a.centroid])
+    return bool(b.signed_distance(points).min() < -0.01 * min(a.reach, b.reach))
 
 
 def gap_between(a: Shape, b: Shape) -> float:
@@ -225,10 +234,10 @@ def random_world(
     ()
     """
     rng = as_rng(rng)
-    limit(n := as_count(n, "n", least=0), MOST_DRAWN, "n must be at most {}")
+    limit(n := as_count(n, "n", least=0), MOST_RANDOM, "n must be at most {}")
     gap, size = as_positive(gap, "gap", zero=True), as_positive(size, "size")
     if style not in STYLES:
-        raise ValueError(f'style must be "paper", "free" or "any", got {style!r}')
+        raise ValueError(f'style must be "paper", "free" or "any", got {short(style)}')
     if style == "paper" and n > len(QUADRANTS):
         raise ValueError(f'the paper\'s style has room for at most 4 shapes, got {n}; use style="free" for more')
     kinds = _checked_kinds(kinds, n, style, rng)
@@ -256,7 +265,7 @@ def _checked_kinds(
         raise ValueError(f"kinds must name one kind for each of the {n} shapes, got {len(kinds)}")
     for kind in kinds:
         if kind not in drawn and not (kind == "polygon" and style == "any"):
-            raise ValueError(f"a kind must be one of {', '.join(drawn)}, got {kind!r}")
+            raise ValueError(f"a kind must be one of {', '.join(drawn)}, got {short(kind)}")
     return [SORTS[rng.integers(len(SORTS))] if kind == "polygon" else kind for kind in kinds]
 
 

@@ -1,6 +1,5 @@
 """What holds for all tests: the same examples on every run, pictures without a window, and threads that wait asleep."""
 
-import importlib.util
 import os
 from pathlib import Path
 
@@ -39,12 +38,6 @@ def screenshots(request):
     if folder:
         folder.mkdir(parents=True, exist_ok=True)
     return folder
-
-
-def pytest_report_header():
-    if importlib.util.find_spec("playwright") is None:
-        return "playwright is absent: the lessons are not tried in a browser"
-    return None
 
 
 def pytest_terminal_summary(terminalreporter):

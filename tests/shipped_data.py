@@ -1,15 +1,17 @@
-"""Shipped data: how the files in data/maps and data/drives were made; the tests hold the files against it.
+"""Shipped data: how data/maps, data/drives and data/published/keys.json were made; the tests hold the files against it.
 
 The files are the truth: NumPy does not promise the same numbers in later versions. Should they ever have to be written
 anew: ``python -m tests.shipped_data``, in the project's folder.
 """
 
+import json
 from pathlib import Path
 
 import numpy as np
 
+from primkit.driving.keyed import press_keys
 from primkit.driving.scripted import scripted_route
-from primkit.formats import paper_suite, save_route, save_world
+from primkit.formats import paper_suite, published_suite, save_route, save_world
 from primkit.formats.suite import SUITE
 from primkit.world import random_world
 
@@ -29,7 +31,15 @@ def make_drive(name):
     return scripted_route(paper_suite()[name], rng=np.random.default_rng([SEED, SUITE.index(name) + 1, 1]))
 
 
+def make_keys(name):
+    """Press the keys on a map of the paper anew."""
+    suite = published_suite()
+    return press_keys(suite[name], rng=np.random.default_rng([SEED, list(suite).index(name) + 1, 2]))
+
+
 if __name__ == "__main__":
     for each in SUITE:
         save_world(make_map(each), DATA / "maps" / f"{each}.geojson")
         save_route(make_drive(each), DATA / "drives" / f"{each}.json")
+    keys = {each: make_keys(each) for each in published_suite()}
+    (DATA / "published" / "keys.json").write_text(json.dumps(keys, indent=1) + "\n")

@@ -23,7 +23,7 @@ PACKAGE = ROOT / "primkit"
 # ``found`` the list that find_shapes returns.
 ORDER = (
     *("arguments", "table"),
-    *("shapes", "palette", "show", "world", "robot", "raycast", "lidar", "grid"),
+    *("shapes", "palette", "show", "world", "robot", "raycast", "faults", "rendered", "lidar", "grid"),
     *("segmentation", "ransac", "lines", "circles", "seen"),
     *("robust", "measure", "found", "account", "paper", "steps", "pipeline", "evaluation"),
     *("formats", "driving", "study", "plots", "widgets", "scene", "checks", "course"),
@@ -52,7 +52,7 @@ ONLY_USER = {
     "mpl_toolkits": ("plots",),
     "ipywidgets": ("widgets", "scene"),
     "anywidget": ("scene",),
-    "sklearn": ("segmentation",),
+    "sklearn": ("segmentation", "paper"),
     "lazy_loader": ("__init__",),
 }
 

@@ -214,7 +214,7 @@ FILE_FAILURES = {
     ),
     "no lidar": (
         lines(HEAD | {"lidar": None}),
-        "a.jsonl: lidar must have beams, dropout, noise_std, period, range_max, range_min, spurious, got None",
+        "a.jsonl: lidar must have beams, dropout, model, noise_std, period, range_max, range_min, spurious, got None",
     ),
     "a lidar without beams": (
         lines(HEAD | {"lidar": HEAD["lidar"] | {"beams": 0}}),

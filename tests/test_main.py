@@ -55,7 +55,7 @@ HELP = {
     "": [
         "usage: primkit [-h] [--version] COMMAND ...",
         "map       simulate a board, map it, and compare with the truth",
-        "study     map many boards: the paper's Tables 1 to 4 beside ours",
+        "study     repeat the paper's Tables 1 to 4, or map many boards of yours",
         "make-map  write a random board to a GeoJSON file",
         "primkit make-map --shapes 6 --style free --out room.geojson",
     ],
@@ -63,7 +63,7 @@ HELP = {
         "usage: primkit map [-h] [--shapes N] [--seed S] [--style paper|free|any]",
         "number of shapes on a board of 1 m x 1 m (default: 4)",
         "seed of all that is random, a whole number (default: 7)",
-        "paper: upright, at most 4 shapes; free: at any angle (default: paper)",
+        "paper: upright, at most 4 shapes; free: at any angle; any: other polygons too (default: paper)",
         "a board of your own, GeoJSON (default: a random one)",
         "the method: ours, or as published (default: robust)",
         "standard deviation of the ranges in mm (default: 0)",
@@ -82,7 +82,8 @@ HELP = {
     ],
     "make-map": [
         "least distance between two shapes in mm (default: 50)",
-        "circle, triangle, rectangle or pentagon, for each shape (default: drawn)",
+        "circle, triangle, rectangle or pentagon, for each shape; in the style any also polygon, star, L ... "
+        "(default: drawn)",
         "the file; one that is there is replaced (default: map.geojson)",
     ],
     "teach": [
@@ -229,7 +230,7 @@ def test_study_prints_tables_and_writes_them(capsys):
     assert main(["study", "--maps", "maps", "--jobs", "1"]) == 0
     out, err = capsys.readouterr()
     assert "Table 1. One shape, automatic movement\n" in out
-    assert "\n2 shapes, 1 map (published: 10)\n published            0.830" in out
+    assert "\n2 shapes, 1 map\n PAPER as published " in out
     assert "\n ROBUST within 5 mm   1.000 " in out
     assert "Maps   2 with PAPER and ROBUST; 0 of 4 results were in the journal already\n" in out
     names = ["table-1.csv", "table-2.csv", "rows.csv", JOURNAL]

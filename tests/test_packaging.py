@@ -9,6 +9,7 @@ from types import ModuleType
 import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
+from packaging.version import Version
 
 ROOT = Path(__file__).resolve().parent.parent
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -37,6 +38,14 @@ def test_environment_pins_exactly(line: str) -> None:
 def test_environment_pins_what_the_project_needs(needed: str) -> None:
     requirement = Requirement(needed)
     assert requirement.specifier.contains(pins()[canonicalize_name(requirement.name)])
+
+
+def test_the_lowest_versions_are_those_that_are_stated() -> None:
+    lines = (ROOT / "tests" / "lowest.txt").read_text(encoding="utf-8").splitlines()
+    tested = dict(line.split("==") for line in lines if line and not line.startswith("#"))
+    for requirement in map(Requirement, PROJECT["dependencies"]):
+        (floor,) = requirement.specifier
+        assert (floor.operator, Version(floor.version)) == (">=", Version(tested[requirement.name]))
 
 
 def test_citation_has_the_project_s_version_and_licence() -> None:

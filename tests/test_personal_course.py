@@ -14,7 +14,7 @@ from primkit.course.grading import personal_truth
 from primkit.course.moved import MOVED, old_names
 from primkit.course.personal import personal_scans, personal_world
 from primkit.formats import save_scans
-from tests.browser.lab import OPTIONS, SERVER, TOKEN, _address, _stop, chromium
+from tests.browser.lab import OPTIONS, PATIENCE, SERVER, TOKEN, _address, _stop, chromium
 from tests.submissions import ProblemSet, with_cell
 from tests.test_teaching import table, teach
 
@@ -221,7 +221,7 @@ def page(course, tmp_path_factory):
     ):
         try:
             context = browser.new_context(base_url=_address(server, folder), viewport={"width": 1280, "height": 800})
-            context.set_default_timeout(30_000)
+            context.set_default_timeout(1000 * PATIENCE)
             yield context.new_page()
             context.close()
         finally:

@@ -107,7 +107,7 @@ def test_each_cell_is_new_once(world):
 
 def test_the_robot_finds_the_shapes_and_sees_the_board(world):
     state, start = DriveState(world), DriveState(world)
-    wander(state, 300)
+    wander(state, 450)
     assert state.score >= 0.5 > start.score
     assert state.unseen().sum() < start.unseen().sum() / 2
 
@@ -140,7 +140,7 @@ def test_neither_memory_nor_a_step_s_work_grows_with_the_drive():
 def test_the_automatic_movements_are_the_library_s(world):
     state = DriveState(world)
     state.step(wheels_for(["forward"]))
-    hand, points, tour = state.compare().runs
+    hand, points, tour = state.compare().lines
     grid = pk.Grid()
     grid.add(pk.scan(world, pk.teleport_poses(world)))
     found, explored = pk.find_shapes(grid.points(), rng=0), pk.explore(world, rng=0)

@@ -2,9 +2,13 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import primkit as pk
-from primkit.steps import nearest_side
+from primkit.steps import kept_kind, nearest_side
+from tests.helpers import exactly
+from tests.test_shapes import angles, anything, offsets
 
 QUICK = pk.Settings(grouping="kmeans", method="published", line_trials=300)
 WORLD = pk.random_world(4, kinds=["circle", "rectangle", "triangle", "circle"], rng=3)
@@ -147,3 +151,33 @@ def test_points_go_to_the_nearest_side():
     outline = triangle.outline(300) * 1.0
     nearest = nearest_side(triangle, outline)
     assert np.bincount(nearest).tolist() == pytest.approx(300 * triangle.sides / triangle.perimeter, abs=2)
+
+
+# --- One fitted side by side keeps its kind ------------------------------------------------------------------
+
+
+@given(anything)
+def test_a_polygon_keeps_its_kind_and_its_corners(polygon):
+    kept = kept_kind(polygon, polygon.moved((3, 1), 0.7))
+    assert kept.kind == polygon.kind
+    np.testing.assert_allclose(kept.vertices, polygon.vertices, atol=0.02 * polygon.reach)
+
+
+@given(st.floats(0.05, 0.3), st.floats(0.05, 0.3), angles, offsets, st.integers(0, 10**6))
+def test_a_measured_rectangle_gets_its_right_angles_and_keeps_the_rest(width, height, angle, offset, seed):
+    true = pk.Polygon([(0, 0), (width, 0), (width, height), (0, height)]).moved(offset, angle)
+    crooked = pk.Polygon(true.vertices + np.random.default_rng(seed).uniform(-0.008, 0.008, (4, 2)))
+    square = kept_kind(crooked, true)
+    assert square.kind == "rectangle"
+    np.testing.assert_allclose(np.degrees(square.turns), 90, atol=1e-9)
+    assert square.centroid == pytest.approx(crooked.centroid, abs=1e-12)
+    means = sorted((crooked.sides[:2] + crooked.sides[2:]) / 2)[::-1]
+    assert square.dimensions == pytest.approx(means, rel=1e-9)
+    assert np.abs(square.signed_distance(crooked.vertices)).max() < 0.02
+    np.testing.assert_allclose(kept_kind(true, true).vertices, true.vertices, atol=1e-12)
+
+
+def test_sides_that_meet_in_another_outline_are_refused():
+    dart, square = pk.Polygon([(0, 0), (4, -3), (1, 0), (4, 3)]), pk.Polygon([(0, 0), (1, 0), (1, 1), (0, 1)])
+    with pytest.raises(ValueError, match=exactly("the rectangle's sides must bend as before at each corner")):
+        kept_kind(dart, square)

@@ -483,7 +483,7 @@ def test_the_picture_has_a_panel_for_each_sweep_and_tolerance(tmp_path):
     figure = plot_accuracy(tables)
     assert [ax.get_title(loc="left") for ax in figure.axes] == ["By hand", "Strays", "", ""]
     assert [ax.get_ylabel() for ax in figure.axes[::2]] == [f"weighted accuracy\nwithin {mm} mm" for mm in (5, 1)]
-    assert figure.axes[2].get_xlabel() == "x [mm]"
+    assert figure.axes[2].get_xlabel() == "range noise [mm]"
     assert figure.get_suptitle() == "Within 5 mm, ROBUST is at most 0.20 behind the oracle, mine up to 0.20\n"
     drawn_lines = {line.get_label(): line for line in figure.axes[0].lines}
     assert list(drawn_lines) == ["ROBUST", "oracle", "mine"]

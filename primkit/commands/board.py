@@ -7,6 +7,7 @@ Out: a report on the screen, a picture and maps in a folder; or one map in a fil
 from __future__ import annotations
 
 import argparse
+import warnings
 from collections.abc import Sequence
 from math import isfinite
 from pathlib import Path
@@ -125,6 +126,7 @@ def _tell(world: World, lidar: Lidar, done: Run, method: str) -> None:
 
 def _write(out: Path, world: World, done: Run, report: Report, seed: int) -> None:
     """Write the picture and the two maps, and say what to open."""
+    from ..arguments import LikelyWrong
     from ..formats import save_world
     from ..plots import plot_story, save_figure
     from ..segmentation import segment
@@ -133,9 +135,10 @@ def _write(out: Path, world: World, done: Run, report: Report, seed: int) -> Non
     method: Literal["link", "kmeans"] = "link" if done.told is None else "kmeans"
     labels = segment(done.points, done.told, method=method, rng=seed)
     save_figure(plot_story(world, done.scans, done.points, labels, done.found, report), out / "map.png")
-    save_world(
-        World([d.shape for d in done.found], world.size), out / "found.geojson", properties=_describe(done.found)
-    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LikelyWrong)  # that what was found lies on each other is no slip of the user's
+        found = World([d.shape for d in done.found], world.size)
+    save_world(found, out / "found.geojson", properties=_describe(done.found))
     save_world(world, out / "truth.geojson")
     say(f"Wrote  {out / 'map.png'}, {out / 'found.geojson'}, {out / 'truth.geojson'}")
     say(f"Next   open {out / 'map.png'} to see it all; in Python, primkit.load_world reads the two maps.")

@@ -7,23 +7,27 @@ Out: tables on the screen, all numbers as CSV in a folder, and a journal from wh
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from ..table import count
 from .words import Parser, meanwhile, path, say, whole
 
 if TYPE_CHECKING:
+    from ..pipeline import Settings
     from ..study import Row
+    from ..world import World
 
-STUDY_TEXT = "map many boards: the paper's Tables 1 to 4 beside ours"
+MOVEMENTS: tuple[Literal["automatic", "manual"], ...] = ("automatic", "manual")
+STUDY_TEXT = "repeat the paper's Tables 1 to 4, or map many boards of yours"
 STUDY_EXAMPLES = """\
 examples:
-  primkit study                          34 maps, both methods: Tables 1 and 2
-  primkit study --movement manual        scripted drives: Tables 3 and 4
+  primkit study                          the paper's 34 maps: Tables 1 and 2
+  primkit study --movement manual        drives with its four keys: Tables 3 and 4
+  primkit study --rows                   recorded and repeated, row by row, too
   primkit study --jobs 1                 one process: the most comparable times
   primkit study --maps maps --out mine   every map in a folder of yours
   primkit study --scheduler tcp://192.168.0.2:8786
@@ -33,6 +37,7 @@ Once stopped, a study continues when the same command is given again: finished m
 are in journal.jsonl. --fresh starts anew.
 """
 SCRIPTED = "Ours are scripted drives: a program steered them around the shapes and left parts out; nobody drove."
+KEYED = "Ours are drives by a rule with the paper's four keys, fixed before it was scored; theirs were not recorded."
 ACCURACY_TEXT = "how right, against noise, shapes, scans, strays"
 ACCURACY_EXAMPLES = """\
 examples:
@@ -50,6 +55,7 @@ def study_options(parser: Parser) -> None:
         "--maps", "PATH", path, None, "GeoJSON files, or folders of them", nargs="+", shown="the paper's 34 maps"
     )
     parser.choice("--movement", ("automatic", "manual", "both"), "on way-points, along scripted drives, or both")
+    parser.add_argument("--rows", action="store_true", help="print the paper's rows one by one beside ours")
     _many_options(parser, "the methods", "tables and rows as CSV")
     parser.add_argument("--fresh", action="store_true", help="forget the journal of earlier runs")
 
@@ -93,32 +99,53 @@ def _workers(arguments: argparse.Namespace) -> Iterator[int | None]:
 
 def study(arguments: argparse.Namespace) -> None:
     """Map many boards with one method or both, print the tables, and write all numbers."""
-    from ..formats import paper_suite
-    from ..study import JOURNAL, METHODS, drives_on, make_folder, maps_in, n_rows, run_study, tables, write_tables
+    from ..study import JOURNAL, METHODS, make_folder, maps_in, n_rows, row_table, tables, write_tables
 
     wanted = {name: method for name, method in METHODS.items() if arguments.settings in ("both", name.lower())}
-    maps = paper_suite() if arguments.maps is None else maps_in(arguments.maps)
+    maps = None if arguments.maps is None else maps_in(arguments.maps)
     out = make_folder(arguments.out)
     journal = out / JOURNAL
     if arguments.fresh:
         journal.unlink(missing_ok=True)
-    meanwhile(f"{count(len(maps), 'map')} with {' and '.join(wanted)}; finished ones are kept in {journal}")
-    before, rows = n_rows(journal), []
-    with _workers(arguments) as jobs:
-        for movement in ("automatic", "manual"):
-            if arguments.movement in (movement, "both"):
-                drives = drives_on(maps, seed=arguments.seed) if movement == "manual" else None
-                rows += run_study(maps, wanted, folder=out, drives=drives, jobs=jobs, seed=arguments.seed)
+    told = "34 maps, three times" if maps is None else count(len(maps), "map")
+    meanwhile(f"{told} with {' and '.join(wanted)}; finished ones are kept in {journal}")
+    before = n_rows(journal)
+    rows = _repeated(arguments, wanted, out) if maps is None else _mapped(arguments, maps, wanted, out)
     kept = len(rows) - (n_rows(journal) - before)
-    made = tables(rows, driven=SCRIPTED)
+    made = [*tables(rows, driven=KEYED if maps is None else SCRIPTED), *[row_table(rows)] * arguments.rows]
     for table in made:
         say(f"{table}\n")
     files = write_tables(out, made, rows)
     if arguments.movement != "automatic":
         files.append(_say_seen(rows, out))
-    say(f"Maps   {len(maps)} with {' and '.join(wanted)}; {kept} of {len(rows)} results were in the journal already")
+    n_maps = len({row.map for row in rows})
+    say(f"Maps   {n_maps} with {' and '.join(wanted)}; {kept} of {len(rows)} results were in the journal already")
     say(f"Wrote  {', '.join(str(out / name) for name in (*files, JOURNAL))}")
     say(f"Next   open {out / 'rows.csv'}: one line for each map and method, times included.")
+
+
+def _repeated(arguments: argparse.Namespace, wanted: Mapping[str, Settings], out: Path) -> list[Row]:
+    """Return the rows of the paper's experiments, repeated."""
+    from ..study import repeat_study
+
+    movements = [movement for movement in MOVEMENTS if arguments.movement in (movement, "both")]
+    with _workers(arguments) as jobs:
+        return repeat_study(movements, settings=wanted, folder=out, jobs=jobs, seed=arguments.seed)
+
+
+def _mapped(
+    arguments: argparse.Namespace, maps: Mapping[str, World], wanted: Mapping[str, Settings], out: Path
+) -> list[Row]:
+    """Return the rows of maps of the user's own."""
+    from ..study import drives_on, run_study
+
+    rows = []
+    with _workers(arguments) as jobs:
+        for movement in MOVEMENTS:
+            if arguments.movement in (movement, "both"):
+                drives = drives_on(maps, seed=arguments.seed) if movement == "manual" else None
+                rows += run_study(maps, wanted, folder=out, drives=drives, jobs=jobs, seed=arguments.seed)
+    return rows
 
 
 def _say_seen(rows: list[Row], out: Path) -> str:

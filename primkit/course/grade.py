@@ -38,31 +38,25 @@ def grade(
 
     Parameters
     ----------
-    course : Course
-        The course.
-    name : str
-        The problem set; it must have been released, for the gradebook knows it from there.
+    course, name : Course, str
+        The course, and a problem set of it that was released: the gradebook knows it from there.
     again : bool
         Whether to grade submissions again that have not changed.
     only : sequence of str
         These students alone; everybody when empty.
     say : callable
         Is called with a line for each student, and with those of the summary.
+
+    Raises
+    ------
+    ValueError
+        If nothing was handed in or released, or the course names what has moved.
     """
-    everybody = course.submitted(name)
-    if unknown := sorted(set(only) - set(everybody)):
-        raise ValueError(f"nothing was handed in for {name} by {', '.join(unknown)}")
-    students = list(only) or everybody
-    if not students:
-        raise ValueError(f"nothing was handed in: put notebooks into submitted/<student>/{name}/ in {course.root}")
-    if not (course.root / "release" / name).is_dir():
-        raise ValueError(f"{name} was not released: run `primkit teach release {name}` first, for nbgrader needs it")
-    refuse_old_names(course, name)
+    students = _students_to_grade(course, name, only)
     say(f"nbgrader runs {len(students)} submission{'s' * (len(students) != 1)}, each for some seconds")
-    folders = [course.root / "submitted" / student / name for student in everybody]
+    folders = [course.root / "submitted" / student / name for student in course.submitted(name)]
     before, start = tree_hash(*folders), time.monotonic()
-    journal = Journal(course, name)
-    counts = Counter[str]()
+    journal, counts = Journal(course, name), Counter[str]()
     for number, student in enumerate(students, 1):
         verdict, line = _grade_one(course, name, student, journal, again)
         counts[verdict] += 1
@@ -72,18 +66,30 @@ def grade(
         say("feedback/ is ready" if made.code == 0 else f"feedback/ is not complete: {made.reason}")
     open_cells = unmarked_answers(course, name)
     hand_back(course, name, journal.entries if counts["graded"] else journal.failed(), open_cells)
-    same = tree_hash(*folders) == before
-    took = time.monotonic() - start
     told = ", ".join(f"{counts[words]} {words}" for words in ("graded", "unchanged", "not graded") if counts[words])
-    say(f"{len(students)} submission{'s' * (len(students) != 1)} in {took:.0f} s: {told}")
+    say(f"{len(students)} submission{'s' * (len(students) != 1)} in {time.monotonic() - start:.0f} s: {told}")
+    same = tree_hash(*folders) == before
     say(f"submitted/ is {'as it was' if same else 'CHANGED: the journal tells whose run it was'}")
     if number := sum(map(len, open_cells.values())):
-        answers, wait = ("answer", "waits") if number == 1 else ("answers", "wait")
+        answers = "answer waits" if number == 1 else "answers wait"
         say(
-            f"{number} written {answers} {wait} to be marked by hand: in formgrader, a page of `jupyter lab`; then "
+            f"{number} written {answers} to be marked by hand: in formgrader, a page of `jupyter lab`; then "
             f"`nbgrader generate_feedback {name} --force`"
         )
     return [*strangers(course, name), *journal.faults()]
+
+
+def _students_to_grade(course: Course, name: str, only: Sequence[str]) -> list[str]:
+    """Return who is graded, or say in one sentence why nobody can be."""
+    everybody = course.submitted(name)
+    if unknown := sorted(set(only) - set(everybody)):
+        raise ValueError(f"nothing was handed in for {name} by {', '.join(unknown)}")
+    if not everybody:
+        raise ValueError(f"nothing was handed in: put notebooks into submitted/<student>/{name}/ in {course.root}")
+    if not (course.root / "release" / name).is_dir():
+        raise ValueError(f"{name} was not released: run `primkit teach release {name}` first, for nbgrader needs it")
+    refuse_old_names(course, name)
+    return list(only) or everybody
 
 
 def _grade_one(course: Course, name: str, student: str, journal: Journal, again: bool) -> tuple[str, str]:
@@ -103,9 +109,8 @@ def _grade_one(course: Course, name: str, student: str, journal: Journal, again:
     if graded:
         faults += list(_read_faults(course, name, student))
     if tree_hash(folder, course.root / "source" / name, course.root / "grader") != before:
-        faults.append(
-            Fault(student, "-", "changed files", "while it ran, files in submitted/, source/ or grader/ changed")
-        )
+        says = "while it ran, files in submitted/, source/ or grader/ changed"
+        faults.append(Fault(student, "-", "changed files", says))
     journal.write(student, before, graded, faults)
     told = "; ".join(f"{fault.cell}: {fault.says}" for fault in faults)
     if not graded:

@@ -70,8 +70,10 @@ def _add_states(course: Course, path: Path) -> None:
     journals = {name: Journal(course, name).entries for name in sets}
     handed_in = {name: set(course.submitted(name)) for name in sets}
     open_cells = {name: unmarked_answers(course, name) for name in sets}
+    where = head.index("assignment"), head.index("student_id")
+    rows.sort(key=lambda row: [row[k] for k in where])  # nbgrader's own order changes from course to course
     for row in rows:
-        name, student = row[head.index("assignment")], row[head.index("student_id")]
+        name, student = (row[k] for k in where)
         if name in sets:
             row.append(
                 state(

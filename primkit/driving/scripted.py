@@ -83,7 +83,7 @@ def scripted_route(world: World, *, rng: int | np.random.Generator | None = None
     check_type(world, World, "world must be a World")
     generator = as_rng(rng)
     start = start_pose(world)
-    return Route(start, _steer(world, start, _tour(world, start[:2], generator), generator))
+    return Route(start, _steer(world, start, tour(world, start[:2], generator), generator))
 
 
 def drives_on(worlds: Mapping[str, World], *, seed: int = 0) -> dict[str, Floats]:
@@ -113,7 +113,7 @@ def drives_on(worlds: Mapping[str, World], *, seed: int = 0) -> dict[str, Floats
 # --- the plan -----------------------------------------------------------------------------------------------
 
 
-def _tour(world: World, start: Floats, rng: np.random.Generator) -> Floats:
+def tour(world: World, start: Floats, rng: np.random.Generator) -> Floats:
     """Return the places that lead around one shape after the other, the nearest first, shape (N, 2)."""
     board = _Board.of(world)
     rings = [_ring(world, shape, rng) for shape in world.shapes]
@@ -230,7 +230,7 @@ def _steer(world: World, start: Floats, way: Floats, rng: np.random.Generator) -
     ahead = round(LOOK_AHEAD / WAY_STEP)
     speed = WHEEL * rng.uniform(*WHEEL_SPEED)
     while here < len(way) - 1 and len(wheels) < MOST_PERIODS:
-        here = _nearest(way, here, pose, ahead)
+        here = progress(way, here, pose, ahead)
         aim = way[min(here + ahead, len(way) - 1)]
         slip = STEERING_MEMORY * slip + np.sqrt(1 - STEERING_MEMORY**2) * rng.normal(0, STEERING_STD)
         held = _choose_wheels(world, pose, aim, speed, slip)
@@ -240,7 +240,7 @@ def _steer(world: World, start: Floats, way: Floats, rng: np.random.Generator) -
     return np.array(wheels).reshape(-1, 2)
 
 
-def _nearest(way: Floats, here: int, pose: Floats, ahead: int) -> int:
+def progress(way: Floats, here: int, pose: Floats, ahead: int) -> int:
     """Return which place of the way the robot is at; it looks a little ahead only, so that no loop is cut short."""
     window = way[here : here + ahead + 1]
     return here + int(np.hypot(*(window - pose[:2]).T).argmin())

@@ -1,7 +1,6 @@
 """Formats: maps, results, scans and drives, to files and back.
 
-Beside the story: every noun can be put on the shelf between two steps, and what is read back is equal to
-the last bit.
+Beside the story: every noun can be put on the shelf between two steps, and what is read back is equal to the last bit.
 
 In:  a ``World`` (a map, or what was found, with properties for each shape), ``Scans`` or a ``Drive``; a file's name.
 Out: GeoJSON (``.geojson``, ``.json``) for worlds, compressed NumPy arrays (``.npz``) for scans, JSON Lines (``.jsonl``)
@@ -15,19 +14,8 @@ Out: GeoJSON (``.geojson``, ``.json``) for worlds, compressed NumPy arrays (``.n
 ...     load_world(f"{folder}/map.geojson") == world
 True
 
-A file is written whole or not at all, apart from a drive's journal, which grows scan by scan. A file that is not
-what it says is refused in one sentence that begins with its name. The rooms, each of which imports only those
-before it:
-
-=============  ==============================================================
-``files.py``   whole or not at all; endings, limits, and sentences with names
-``maps.py``    worlds as GeoJSON
-``scans.py``   scans as NumPy arrays
-``values.py``  what stands in a JSON text by a stranger
-``drives.py``  drives as JSON Lines, one scan after the other
-``routes.py``  how the wheels turned on a drive, as JSON
-``suite.py``   the paper's 34 maps, and a scripted drive on each
-=============  ==============================================================
+A file is written whole or not at all, apart from a drive's journal, which grows scan by scan. A file that is not what
+it says is refused in one sentence that begins with its name, and takes no more memory than a multiple of its size.
 """
 
 from .drives import DRIVE_ENDINGS, DRIVE_LIMIT, Drive, DriveJournal, load_drive, record_drive, save_drive
@@ -35,12 +23,15 @@ from .files import StrPath, write_atomically
 from .maps import MAP_ENDINGS, MAP_LIMIT, load_world, save_world
 from .routes import ROUTE_ENDINGS, ROUTE_LIMIT, Route, load_route, save_route
 from .scans import SCAN_ENDINGS, SCANS_LIMIT, load_scans, save_scans
-from .suite import paper_suite, scripted_drives
+from .suite import bundled_keys, paper_suite, published_suite, recorded_rows, scripted_drives
 
 __all__ = [
     "load_world",
     "save_world",
     "paper_suite",
+    "published_suite",
+    "recorded_rows",
+    "bundled_keys",
     "scripted_drives",
     "load_scans",
     "save_scans",

@@ -41,7 +41,6 @@ from .values import numbers_in, parsed
 DRIVE_ENDINGS = (".jsonl",)
 # Most of an hour with ten scans of 100 beams a second if all of them hit something, several hours otherwise.
 DRIVE_LIMIT = 64 * 2**20
-DRIVE_BEAMS = 100_000  # a short line may not ask for a scan that fills the memory
 DRIVE_FORMAT, DRIVE_VERSION = "primkit drive", 1
 
 
@@ -182,7 +181,7 @@ def record_drive(path: StrPath, lidar: Lidar | None = None, *, replace: bool = F
     Raises
     ------
     ValueError
-        If the ending is another one, or the sensor has more than 100,000 beams.
+        If the ending is another one.
     OSError
         If the file is there already (``FileExistsError``), or cannot be written.
 
@@ -266,7 +265,6 @@ def load_drive(path: StrPath) -> Drive:
 
 def _head(lidar: Lidar) -> bytes:
     """Return the first line of a drive's file."""
-    _check_beams(lidar)
     return _json({"format": DRIVE_FORMAT, "version": DRIVE_VERSION, "lidar": asdict(lidar)})
 
 
@@ -291,10 +289,6 @@ def _check_scans(scans: Scans, lidar: Lidar) -> None:
         raise ValueError(f"scans must be the lidar's, with {lidar.beams} beams, got {scans.ranges.shape[-1]} others")
 
 
-def _check_beams(lidar: Lidar) -> None:
-    limit(lidar.beams, DRIVE_BEAMS, "a drive's lidar must have at most {} beams")
-
-
 # From lines to a drive.
 
 
@@ -308,11 +302,9 @@ def _lidar_in(line: bytes) -> Lidar:
     if told.get("version") != DRIVE_VERSION:
         raise ValueError(f"must be a drive of version {DRIVE_VERSION}, got version {short(told.get('version'))}")
     lidar, names = told.get("lidar"), {field.name for field in fields(Lidar)}
-    if not isinstance(lidar, dict) or set(lidar) != names:
+    if not isinstance(lidar, dict) or set({"model": "exact"} | lidar) != names:  # older drives tell no model
         raise ValueError(f"lidar must have {', '.join(sorted(names))}, got {short(lidar)}")
-    sensor = Lidar(**lidar)
-    _check_beams(sensor)
-    return sensor
+    return Lidar(**lidar)
 
 
 def _numbers_of(line: bytes, lidar: Lidar, number: int) -> Floats:

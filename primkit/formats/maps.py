@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import check_type, limit
+from ..arguments import check_type, limit, short
 from ..shapes import SAME_CORNER, Circle, Polygon, Shape
 from ..world import World
 from .files import TEXT_LIMIT, StrPath, as_path, bounded_read, naming, write_atomically
@@ -173,7 +173,7 @@ def _feature_text(shape: Shape, extra: Mapping[str, Any]) -> str:
 def _check_property(key: Any, value: Any) -> None:
     """Refuse a property that cannot be written beside a shape's own."""
     if not isinstance(key, str) or key in ("kind", "radius"):
-        raise ValueError(f"a property's name must be a text other than kind and radius, got {key!r}")
+        raise ValueError(f"a property's name must be a text other than kind and radius, got {short(key)}")
     try:
         _json({key: value}).encode()  # half a surrogate pair is no text
     except (TypeError, ValueError, RecursionError):

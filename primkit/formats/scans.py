@@ -54,17 +54,6 @@ def save_scans(scans: Scans, path: StrPath) -> None:
         reads.
     OSError
         If the file cannot be written; the old one then stays as it was.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from primkit.lidar import scan
-    >>> from primkit.world import random_world
-    >>> seen = scan(random_world(4, rng=7), [(0, 0, 0)])
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     save_scans(seen, f"{folder}/drive.npz")
-    ...     bool((load_scans(f"{folder}/drive.npz").ranges == seen.ranges).all())
-    True
     """
     path = as_path(path, SCAN_ENDINGS, "a file of scans")
     with naming(path.name):

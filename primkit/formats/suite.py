@@ -1,4 +1,4 @@
-"""Suite: the paper's 34 maps, as files, and a scripted drive on each.
+"""Suite: 34 maps drawn like the paper's, with a scripted drive on each; and the paper's own 34.
 
 Out: ``World`` by name: one shape of each kind alone, then ten maps each of two, three and four shapes; ``Route`` by
      the same names.
@@ -7,14 +7,17 @@ Out: ``World`` by name: one shape of each kind alone, then ten maps each of two,
 >>> len(suite), list(suite)[3:5], suite["1-pentagon"].shapes[0].kind
 (34, ['1-pentagon', '2-01'], 'pentagon')
 
-Source: the paper names the number of its maps and how they were drawn, and not the maps: these are drawn alike. Of
-its manual drives it tells the times alone: these were steered by a script, ``driving.scripted``, and by nobody.
+Source: the paper tells how its maps were drawn, and the suite's are drawn alike; the numbers of its own are those of
+the worlds that its authors Vaz, Costa and Campiao published (2024). Of its manual drives it tells the times alone: the
+suite's were steered by a script, ``driving.scripted``, and by nobody.
 
 Not here: how the files were made (``tests/shipped_data.py``).
 """
 
 from __future__ import annotations
 
+import csv
+import json
 from pathlib import Path
 
 from ..shapes import PRIMITIVES
@@ -46,6 +49,55 @@ def paper_suite() -> dict[str, World]:
     """
     folder = _data_folder() / "maps"
     return {name: load_world(folder / f"{name}.geojson") for name in SUITE}
+
+
+def published_suite() -> dict[str, World]:
+    """Return the 34 worlds of the paper's own experiments, by the names in its authors' results.
+
+    Their dimensions are whole centimetres. The property ``scored_as`` in the files is the rounded truth that the
+    published code scores against; ``paper.published_values`` gives the same numbers.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the maps are not where primkit is installed.
+
+    Examples
+    --------
+    >>> suite = published_suite()
+    >>> len(suite), list(suite)[:5]
+    (34, ['1_circle', '1_pentagon', '1_quadrado', '1_triangulo', '2_circlecircle'])
+    """
+    folder = _data_folder() / "published" / "maps"
+    return {
+        name: load_world(folder / f"{name}.geojson") for name in dict.fromkeys(row["map"] for row in recorded_rows())
+    }
+
+
+def recorded_rows() -> list[dict[str, str]]:
+    """Return the 68 rows that the paper's authors recorded, as they stand in the file: 34 maps, two movements.
+
+    Examples
+    --------
+    >>> recorded_rows()[0]["map"], recorded_rows()[0]["seconds"]
+    ('1_circle', '10.03')
+    """
+    with (_data_folder() / "published" / "rows.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def bundled_keys() -> dict[str, str]:
+    """Return the keys of a drive on each map of ``published_suite``, one letter for a tenth of a second.
+
+    A rule pressed them, see ``driving.keyed``, and nobody.
+
+    Examples
+    --------
+    >>> bundled_keys()["1_circle"][:4]
+    'AAAA'
+    """
+    keys: dict[str, str] = json.loads((_data_folder() / "published" / "keys.json").read_text(encoding="utf-8"))
+    return keys
 
 
 def scripted_drives() -> dict[str, Route]:

@@ -6,7 +6,7 @@ Out: distances, shape (P, B), metres; infinity where a beam meets nothing.
 >>> import numpy as np
 >>> from primkit.shapes import Circle
 >>> from primkit.world import World
->>> cast_rays(World([Circle((1, 0), 0.25)]), [(0, 0, 0)], [0.0, np.pi / 2]).tolist()
+>>> cast_rays(World([Circle((1, 0), 0.25)], size=3), [(0, 0, 0)], [0.0, np.pi / 2]).tolist()
 [[0.75, inf]]
 
 The same twice. ``plain.py`` asks every beam about every side, as one would write it first: slow, easy to trust, and

@@ -6,7 +6,7 @@ hold the two against each other on random boards.
 In:  a ``World``, poses, shape (P, 3): x [m], y [m], heading [rad], and the beams' bearings, shape (B,).
 Out: distances, shape (P, B), metres; infinity where a beam meets nothing.
 
->>> cast_plainly(World([Circle((1, 0), 0.25)]), [(0, 0, 0)], [0.0, np.pi / 2]).tolist()
+>>> cast_plainly(World([Circle((1, 0), 0.25)], size=3), [(0, 0, 0)], [0.0, np.pi / 2]).tolist()
 [[0.75, inf]]
 
 Legend: u is a beam's direction, of length 1; t the distance to a hit; a a side's first corner and d the way to its

@@ -11,8 +11,8 @@ Out: a ``Row`` for each map and method; from them a ``Table``, which prints, sho
 >>> [table.title for table in tables(rows)]
 ['Table 2. Several shapes, automatic movement']
 
-``published`` puts the paper's figures beside ours, ``seen_table`` counts what a drive saw, ``accuracy/`` changes one
-thing at a time. Not here: the drives (``driving``), and the pictures (``plots``).
+``repeat`` repeats the paper's experiments, ``published`` puts what was recorded beside them, ``seen_table`` counts what
+a drive saw, ``accuracy/`` changes one thing at a time. Not here: the drives (``driving``), the pictures (``plots``).
 
 Source: the paper's section 3.3, "Results".
 """
@@ -30,11 +30,13 @@ from .journal import JOURNAL, make_folder, n_rows
 from .many import METHODS, maps_in, run_study
 from .oracle import ORACLE, Oracle, oracle_fit, shares_seen, told_points
 from .paper_table import Line
-from .published import PUBLISHED, rows_as_csv, tables, write_tables
+from .published import PUBLISHED, Recorded, agrees, row_table, rows_as_csv, tables, write_tables
+from .repeat import repeat_study
 from .row import Row, Score
 from .seen_table import seen_table
 
 __all__ = ["run_study", "on_cluster", "METHODS", "maps_in", "Experiment", "run", "Run", "perform", "Row", "Score"]
+__all__ += ["repeat_study", "agrees", "row_table", "Recorded"]
 __all__ += ["tables", "Line", "PUBLISHED", "rows_as_csv", "write_tables"]
 __all__ += ["Estimate", "mean_of", "share_of", "JOURNAL", "make_folder", "n_rows"]
 __all__ += ["ORACLE", "Oracle", "told_points", "oracle_fit", "shares_seen"]

@@ -73,7 +73,7 @@ def rows_in(file: BinaryIO) -> dict[str, Row]:
             limit(len(line), LINE_LIMIT, "must be at most {} bytes")
             entry = parsed(line)
             rows[json.dumps(entry["experiment"], sort_keys=True)] = _as_row(entry["row"])
-        except (ValueError, TypeError, KeyError, RecursionError):
+        except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
             raise ValueError(f"{JOURNAL}, line {number}: must be a row of a study, got {line[:40]!r}") from None
     file.seek(0, os.SEEK_END)
     return rows

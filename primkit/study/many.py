@@ -12,7 +12,7 @@ A study can be killed at any time: each finished row goes to a journal, and the 
 one stopped. Scores and errors depend neither on that nor on the number of workers: each map has random numbers of
 its own, from the study's seed, the map's name and its shapes.
 
-Source: the paper's section 3.3, "Results"; the 34 maps are ``formats.paper_suite``.
+Source: the paper's section 3.3, "Results"; its 34 maps are ``formats.published_suite``.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ from typing import Any, TypeVar
 
 from numpy.typing import ArrayLike
 
-from ..arguments import as_count, as_poses, as_positive, check_type
-from ..formats import MAP_ENDINGS, StrPath, load_world, paper_suite
+from ..arguments import as_count, as_poses, as_positive, check_type, short
+from ..formats import MAP_ENDINGS, StrPath, load_world, published_suite
 from ..lidar import Lidar
 from ..pipeline import PAPER, ROBUST, Settings
 from ..world import World
@@ -111,7 +111,7 @@ def run_study(
     check_type(common["lidar"], Lidar, "lidar must be Lidar")
     for chosen in settings.values():
         check_type(chosen, (Settings, Oracle), "each of the settings must be Settings")
-    jobs, worlds = checked_jobs(jobs), paper_suite() if worlds is None else worlds
+    jobs, worlds = checked_jobs(jobs), published_suite() if worlds is None else worlds
     experiments = _experiments(worlds, settings, drives, common)
     total = len(worlds) * len(settings) if isinstance(worlds, Sized) else None
     return perform_all(experiments, folder=folder, jobs=jobs, total=total, progress=progress)
@@ -304,4 +304,4 @@ def checked_jobs(jobs: int | None) -> int | None:
     try:
         return as_count(jobs, "jobs")
     except ValueError:
-        raise ValueError(f"jobs must be a whole number >= 1, -1 for every core, or None, got {jobs!r}") from None
+        raise ValueError(f"jobs must be a whole number >= 1, -1 for every core, or None, got {short(jobs)}") from None

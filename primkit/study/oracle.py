@@ -75,9 +75,13 @@ def told_points(
     Notes
     -----
     The true hit of a beam tells the side; noise moves the point along the beam. A cell that was hit from several
-    sides belongs to the first.
+    sides belongs to the first. A rendered LiDAR has no true hit: its points belong to the side they are nearest to.
     """
     lidar = Lidar() if lidar is None else lidar
+    grid = Grid(resolution)
+    cells, first = np.unique(grid.to_cells(scans.points()), axis=0, return_index=True)
+    if lidar.model == "webots":
+        return grid.to_points(cells), hit_sides(world, scans.points())[first]
     exact = _exact_ranges(world, scans, lidar)
     seen, true = scans.ranges[scans.hits], exact[scans.hits]
     real = np.isfinite(true)
@@ -86,8 +90,6 @@ def told_points(
     hits = replace(scans, ranges=np.where(scans.hits, exact, np.inf)).points()
     owners[np.isfinite(true)] = hit_sides(world, hits)
     owners[~real] = NOBODY
-    grid = Grid(resolution)
-    cells, first = np.unique(grid.to_cells(scans.points()), axis=0, return_index=True)
     return grid.to_points(cells), owners[first]
 
 
@@ -153,7 +155,7 @@ def oracle_fit(world: World, points: Floats, owners: Ints) -> list[Shape | None]
     -------
     list of Circle, Polygon and None
         None where a side has fewer than two points, or a circle fewer than three; and where the sides' lines do
-        not meet in a convex outline.
+        not meet in a simple outline.
 
     Examples
     --------

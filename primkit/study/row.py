@@ -69,6 +69,10 @@ class Row:
         For each of ``kinds``, the share of its outline that the drive saw; empty with automatic movement.
     dimension_counts : tuple of int
         For each of ``kinds``, how many dimensions the true shape has; may be empty without a ``"polygon"``.
+    sensor : {"exact", "webots"}
+        The LiDAR's model.
+    crashed : bool
+        Whether the published scoring ends at a wrong kind; ``paper`` is then 0 in all.
     """
 
     map: str
@@ -91,6 +95,9 @@ class Row:
     @property
     def _counts(self) -> tuple[int, ...]:
         return self.dimension_counts or tuple(N_DIMENSIONS[kind] for kind in self.kinds)
+
+    sensor: str = "exact"
+    crashed: bool = False
 
     @property
     def n_shapes(self) -> int:

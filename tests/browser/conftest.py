@@ -1,15 +1,8 @@
 """One Jupyter and one browser for all tests in here; without them they are skipped, or fail where they must be."""
 
-import os
-
 import pytest
 
-try:
-    from .lab import chromium, enter, jupyter
-except ModuleNotFoundError:  # playwright; the header of the run says so
-    if os.environ.get("PRIMKIT_BROWSER") == "required":
-        raise
-    collect_ignore_glob = ["*.py"]
+from .lab import PATIENCE, chromium, enter, jupyter
 
 
 @pytest.fixture(scope="package")
@@ -36,7 +29,7 @@ def address(folder):
 def context(browser, address):
     """The browser with Jupyter's address as its home."""
     context = browser.new_context(base_url=address, viewport={"width": 1280, "height": 1000})
-    context.set_default_timeout(30_000)
+    context.set_default_timeout(1000 * PATIENCE)
     yield context
     context.close()
 
@@ -47,7 +40,7 @@ def phone(browser, address):
     context = browser.new_context(
         base_url=address, viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True
     )
-    context.set_default_timeout(30_000)
+    context.set_default_timeout(1000 * PATIENCE)
     yield context
     context.close()
 

@@ -21,7 +21,7 @@ from .panel import Panel, panels
 ROOT = Path(__file__).resolve().parents[2]
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 LESSONS = [path.stem for path in sorted((ROOT / "notebooks").glob("*.ipynb"))]
-PATIENCE = 60  # s: for a server to come up, or a widget to answer, on a machine that is busy
+PATIENCE = 180  # s: for a server to come up, or a page to show something, on a machine that is busy
 RUN_TIME = 300  # s: for all cells of a lesson
 TALLEST = 16_000  # px: browsers draw no taller picture
 

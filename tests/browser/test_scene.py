@@ -20,6 +20,7 @@ FILM = [
     "poses = pk.drive(world, [(6, 4)] * 60)\ndrive = pk.Drive(pk.scan(world, poses), np.zeros((61, 2)))",
     "pk.replay(drive, world)",
 ]
+POLL = 50  # ms: the page is looked at so often; by default at every frame, which costs as much as the scene
 PRESSES = 20  # measured key presses
 LONGEST = 60  # looks at a robot that shall come to rest
 UNBEARABLE = 1000  # ms: far above what is measured, as the machine may be busy
@@ -73,7 +74,9 @@ class Seat:
 
     def after(self, scans):
         """Wait until the page shows that many scans or more."""
-        self.page.wait_for_function("(n) => +document.querySelector('.primkit-scene').dataset.scans >= n", arg=scans)
+        self.page.wait_for_function(
+            "(n) => +document.querySelector('.primkit-scene').dataset.scans >= n", arg=scans, polling=POLL
+        )
 
     def hold(self, keys, scans):
         """Hold keys until that many more scans are seen."""
@@ -97,7 +100,7 @@ class Seat:
 
     def rests(self):
         """Wait until no more shapes are looked for."""
-        self.page.wait_for_function("document.querySelector('.primkit-scene').dataset.busy === 'false'")
+        self.page.wait_for_function("document.querySelector('.primkit-scene').dataset.busy === 'false'", polling=POLL)
 
 
 @pytest.fixture(scope="module")
@@ -326,7 +329,7 @@ def in_voila(context, folder, name, sources):
     """Open a notebook as a page without code."""
     (folder / "notebooks" / f"{name}.ipynb").write_text(notebook(sources))
     page = context.new_page()
-    page.goto(f"/voila/render/{name}.ipynb?token={TOKEN}", timeout=60_000)
+    page.goto(f"/voila/render/{name}.ipynb?token={TOKEN}")
     return page
 
 

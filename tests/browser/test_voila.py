@@ -12,7 +12,7 @@ LESSON = "01_see_with_rays"
 @pytest.fixture(scope="module")
 def page(context):
     page = context.new_page()
-    page.goto(f"/voila/render/{LESSON}.ipynb?token={TOKEN}", timeout=60_000)
+    page.goto(f"/voila/render/{LESSON}.ipynb?token={TOKEN}")
     yield page
     page.close()
 

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arguments import Floats, as_count
+from ...arguments import Floats, as_count, short
 from ...formats import StrPath
 from ...pipeline import Settings
 from ...table import Table, as_csv, count
@@ -133,7 +133,7 @@ def run_accuracy(
     the centre within 10 cm.
     """
     if sweep not in SWEEPS:
-        raise ValueError(f"sweep must be one of {', '.join(SWEEPS)}, got {sweep!r}")
+        raise ValueError(f"sweep must be one of {', '.join(SWEEPS)}, got {short(sweep)}")
     n_maps, seed = as_count(n_maps, "n_maps"), as_count(seed, "seed", least=0)
     if TRUTHS in settings:
         raise ValueError(f'settings must not be called "{TRUTHS}"')
