@@ -36,6 +36,7 @@ from .shapes import Polygon
 
 MOST_ACROSS = 0.45  # m on cells of 1 mm, as all here: what is wider is a room, whose sides are walls
 LEAST_ON_WALL = 8  # points
+MOST_ON_WALLS = 0.75  # share of a group's points on the walls of a room
 BY_CHANCE = 5.0  # a shape has so many times the points of strays that its place would have by chance
 CHANCE_AROUND = 0.022  # m: as far as points are linked
 
@@ -62,10 +63,10 @@ class Account:
     density: float
 
     @classmethod
-    def of(cls, points: Floats, local: Floats, frame: Frame, unlinked: NDArray[np.bool_]) -> Account:
-        """Return the account of points of which some were linked to nothing."""
+    def of(cls, points: Floats, local: Floats, frame: Frame, n_unlinked: int) -> Account:
+        """Return the account of points of which so many were linked to nothing: nobody chose to leave them out."""
         area = float(np.prod(np.ptp(local, axis=0) + CHANCE_AROUND))
-        return cls(points, local, frame, np.count_nonzero(unlinked) / area)
+        return cls(points, local, frame, n_unlinked / area)
 
     def closed(self, things: Iterable[Thing]) -> Found:
         """Return everything in metres, from left to right, each point once, and the strays that are left."""
@@ -110,12 +111,18 @@ def things_of(choice: Choice, count_margin: float, account: Account) -> list[Thi
     found = as_detection(choice)
     if found is None or account.by_chance(found.points):
         return []
-    if isinstance(best.figure, Outlines) and np.ptp(choice.points, axis=0).max() > MOST_ACROSS:
+    if isinstance(best.figure, Outlines) and _is_room(choice, best.figure):
         return list(_walls_around(choice, best.figure))
     if _is_other(choice, found):
         outline = found.shape.vertices if isinstance(found.shape, Polygon) else found.shape.outline(36)
         return [Other(choice.points, outline)]
     return [replace(found, count_margin=count_margin)]
+
+
+def _is_room(choice: Choice, outline: Outlines) -> bool:
+    """Tell whether an outline is wider than any shape, and fits most of the points."""
+    wide = np.ptp(outline.corners()[0], axis=0).max() > MOST_ACROSS
+    return bool(wide and choice.on_it.mean() >= MOST_ON_WALLS and choice.fit >= CERTAIN)
 
 
 def _is_other(choice: Choice, found: Detection) -> bool:

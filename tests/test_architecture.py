@@ -25,7 +25,7 @@ ORDER = (
     *("arguments", "table"),
     *("shapes", "palette", "show", "world", "robot", "raycast", "faults", "rendered", "lidar", "grid"),
     *("segmentation", "ransac", "lines", "circles", "seen"),
-    *("robust", "measure", "found", "paper", "steps", "pipeline", "evaluation"),
+    *("robust", "measure", "found", "account", "paper", "steps", "pipeline", "evaluation"),
     *("formats", "driving", "study", "plots", "widgets", "scene", "checks", "course"),
     *("__init__", "commands", "__main__"),
 )

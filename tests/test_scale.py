@@ -56,7 +56,7 @@ def test_the_same_points_enlarged_are_the_same_shapes(settings, k):
 def test_a_grid_knows_its_own_cells(k):
     for seed in range(3):
         large, grid = board(seed, 0.0, k)
-        assert pk.evaluate(pk.find_shapes(grid, rng=0), large, 0.005 * k).weighted_accuracy == 1.0
+        assert pk.evaluate(pk.find_shapes(grid, rng=0), large, 0.005 * k, gate=0.1 * k).weighted_accuracy == 1.0
 
 
 def test_a_board_far_away_is_the_same_board():
