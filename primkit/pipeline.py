@@ -168,11 +168,11 @@ def find_shapes(
     points, local = points[order], local[order]
     group_rng, measure_rng = as_rng(rng).spawn(2)
     labels = steps.labels(points, n_shapes)
-    own = labels is not None
+    grouped = labels is not None
     if labels is None:
         labels = _groups(local, n_shapes, settings, group_rng)
     together = [local[labels == label] for label in range(labels.max() + 1)]
-    account = Account.of(points, local, frame, 0 if own else np.count_nonzero(labels < 0))
+    account = Account.of(points, local, frame, 0 if grouped else np.count_nonzero(labels < 0))
     steps = steps.within(frame)
     found: list[Thing] = []
     if settings.method == "published":
