@@ -29,14 +29,14 @@ from ..world import World
 from .scripted import LOOK_AHEAD, MOST_PERIODS, WAY_STEP, progress, tour
 
 KEYED_START = np.array([-0.0865, -0.2117, PUBLISHED_HEADING])  # the same in all of the paper's worlds
-TURN_SPEED = 4.17  # rad/s
+KEY_TURN_SPEED = 4.17  # rad/s
 KEYS = {
     "W": (FASTEST, FASTEST),
     "S": (-FASTEST, -FASTEST),
-    "A": (-TURN_SPEED, TURN_SPEED),
-    "D": (TURN_SPEED, -TURN_SPEED),
+    "A": (-KEY_TURN_SPEED, KEY_TURN_SPEED),
+    "D": (KEY_TURN_SPEED, -KEY_TURN_SPEED),
 }
-TURN_OF_A_KEY = WHEEL * 2 * TURN_SPEED / AXLE * PERIOD  # rad
+TURN_OF_A_KEY = WHEEL * 2 * KEY_TURN_SPEED / AXLE * PERIOD  # rad
 
 
 def published_drives() -> dict[str, Floats]:
