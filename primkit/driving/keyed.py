@@ -1,10 +1,9 @@
 """Keyed: drives with four keys, as the paper's authors drove: straight on, back, or a turn on the spot, and no arcs.
 
 W and S turn both wheels at full speed, A and D one against the other; a key is held for a tenth of a second, then there
-is a scan. Their paths were not recorded. A driver beside the board plans these as in ``scripted``: around the nearest
-shape that is left, at a distance that sways, with a part left out now and then. Ten times a second it looks at the
-place a little ahead on its way, and presses A or D where that lies farther off its heading than half of what the key
-turns, and W elsewhere. It makes no mistakes, and never looks at what was mapped. None of it was changed after a score.
+is a scan. Their paths were not recorded: a driver beside the board plans these as in ``scripted``. Ten times a second
+it looks at the place a little ahead on its way, and presses A or D where that lies farther off its heading than half of
+what the key turns, and W elsewhere. It never looks at what was mapped. None of it was changed after a score.
 
 The shapes have no body: the start lies in some of them, and the robot drives out through their sides.
 
