@@ -42,10 +42,8 @@ Protocol = Literal["fair", "paper"]
 SHAPE_WEIGHT, CENTER_WEIGHT, DIMENSION_WEIGHT = 0.4, 0.3, 0.3
 GATE = 0.10  # m: a shape whose centre is farther off than a large circle's radius is another shape
 
-# The published scoring: both sides rounded to 1 cm, right when found - true < 1 mm (without an absolute value), and
-# accuracies to two decimals.
-PAPER_DIGITS = 2
-PAPER_TOLERANCE = 0.001
+# The published scoring: both sides rounded to 1 cm, right when found - true < 1 mm; accuracies to two decimals.
+PAPER_DIGITS, PAPER_TOLERANCE = 2, 0.001
 
 
 @dataclass(frozen=True, eq=False)
@@ -273,20 +271,14 @@ def match(
 
 
 def _compare_fairly(found: Shape, true: Shape, tolerance: float) -> Match:
-    """Compare centroids and dimensions, both ways."""
-    center = found.centroid - true.centroid
-    if found.kind != true.kind or len(found.dimensions) != len(true.dimensions):
+    """Compare centroids and dimensions, both ways; sides in order under the best cyclic shift."""
+    center, ours, theirs = found.centroid - true.centroid, np.array(found.dimensions), np.array(true.dimensions)
+    if found.kind != true.kind or len(ours) != len(theirs):
         return Match(found, true, center, None, _within(center, tolerance), (False,) * _n_dimensions(true))
-    dimension = _dimension_error(found, true)
-    return Match(found, true, center, dimension, _within(center, tolerance), _within(dimension, tolerance))
-
-
-def _dimension_error(found: Shape, true: Shape) -> tuple[float, ...]:
-    """Return found - true for each dimension; sides in order under the best cyclic shift."""
-    ours, theirs = np.array(found.dimensions), np.array(true.dimensions)
     shifts = range(len(theirs)) if len(theirs) >= 3 else [0]
     errors = [np.roll(ours, shift) - theirs for shift in shifts]
-    return tuple(min(errors, key=lambda e: float(np.abs(e).sum())).tolist())
+    dimension = tuple(min(errors, key=lambda e: float(np.abs(e).sum())).tolist())
+    return Match(found, true, center, dimension, _within(center, tolerance), _within(dimension, tolerance))
 
 
 def _match_as_published(found: Sequence[Shape], true: Sequence[Shape]) -> list[tuple[int, int]]:

@@ -18,7 +18,7 @@ Rousseeuw (1987); linking is DBSCAN, Ester, Kriegel, Sander and Xu (1996). The f
 from __future__ import annotations
 
 import warnings
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -192,8 +192,9 @@ def _linked(places: Floats, n_at: Labels, reach: float, neighbours: int) -> Labe
 
     cells, cell = _cells(places, reach / CELLS_IN_REACH)
     tree, cell_tree = cKDTree(places), cKDTree(cells)
-    following = cell_tree.query_pairs(NEXT, output_type="ndarray").T
-    surely_near = _with_neighbours(np.bincount(cell, n_at), following)
+    following = cell_tree.query_pairs(NEXT, output_type="ndarray").T.astype(np.intp, copy=False)
+    n_in, (a, b) = np.bincount(cell, n_at), following
+    surely_near = n_in + np.bincount(a, n_in[b], len(cells)) + np.bincount(b, n_in[a], len(cells))
     handing_on = surely_near[cell] >= neighbours
     rest = np.flatnonzero(~handing_on)
     around = tree.query_ball_point(places[rest], reach)
@@ -223,12 +224,6 @@ def _cells(places: Floats, side: float) -> tuple[Floats, Labels]:
     row, column = (np.unique(axis, return_inverse=True)[1] for axis in ij.T)  # numbers below N: no pair overflows
     _, first, cell = np.unique(row * len(places) + column, return_index=True, return_inverse=True)
     return ij[first], cell.astype(np.intp, copy=False)
-
-
-def _with_neighbours(count: NDArray[Any], pairs: NDArray[np.intp]) -> NDArray[Any]:
-    """Return for each cell its own count and those of the cells that it makes pairs with, shape (M,)."""
-    a, b = pairs.astype(np.intp, copy=False)
-    return count + np.bincount(a, count[b], len(count)) + np.bincount(b, count[a], len(count))
 
 
 def components(n: int, pairs: NDArray[np.intp]) -> Labels:

@@ -125,14 +125,17 @@ class MovingGrid:
     def _follow(self, one: Scans) -> None:
         self.n_scans += 1
         if one.inside[0]:
-            return  # it sees nothing, and knows it
+            return  # in a shape nothing is seen
         cells, hit = self._cells, self._hit_by(one)
         cells["against"] += self._contradicted(one)
         merged = np.concatenate([cells[~np.isin(cells["key"], hit["key"])], hit])  # those hit as they are known now
         self._cells = merged[np.argsort(merged["key"])]
         given_up = self._cells["against"] >= EVICTED_AFTER
         if given_up.any():
-            self._gone = np.concatenate([self._gone[self._gone["until"] >= self.n_scans], self._evicted(given_up)])
+            gone = np.zeros(int(given_up.sum()), dtype=GONE_FIELDS)
+            gone["key"], gone["seen"] = self._cells["key"][given_up], self._cells["seen"][given_up]
+            gone["until"] = self.n_scans + SCANS_KEPT
+            self._gone = np.concatenate([self._gone[self._gone["until"] >= self.n_scans], gone])
             self._cells = self._cells[~given_up]
             self._cells = self._cells[~self._falling()]
 
@@ -190,13 +193,6 @@ class MovingGrid:
         ahead = length - along
         between: Bools = ((across <= self.resolution) & (ahead > BEFORE_A_HIT) & (ahead < BEHIND)).any(axis=1)
         return between
-
-    def _evicted(self, given_up: Bools) -> NDArray[np.void]:
-        """Return what is remembered of cells that are given up: where they were, and when they were seen last."""
-        gone = np.zeros(int(given_up.sum()), dtype=GONE_FIELDS)
-        gone["key"], gone["seen"] = (self._cells[name][given_up] for name in ("key", "seen"))
-        gone["until"] = self.n_scans + SCANS_KEPT
-        return gone
 
     def _falling(self) -> Bools:
         """Tell which cells hang together with many that were given up, and were not seen since, shape (N,)."""
