@@ -36,7 +36,7 @@ from ..driving.seen_map import EXPLAINED, SeenMap
 from ..evaluation import evaluate
 from ..formats import DriveJournal, record_drive
 from ..grid import Grid
-from ..lidar import Lidar, Scans, scan
+from ..lidar import Lidar, Scans, as_lidar, scan
 from ..measure import Detection
 from ..robot import advance, start_pose
 from ..table import Table
@@ -90,8 +90,7 @@ class DriveState:
         executor: Executor | None = None,
     ) -> None:
         check_type(world, World, "world must be a World, as in drive_scene(world)")
-        self.lidar, self.seed, self.moving = Lidar() if lidar is None else lidar, rng, moving
-        check_type(self.lidar, Lidar, "lidar must be a Lidar, such as Lidar()")
+        self.lidar, self.seed, self.moving = as_lidar(lidar), rng, moving
         check_type(moving, bool, "moving must be True or False")
         check_type(rng, int, "rng must be a seed, a whole number")
         self.journal = None if journal is None else Path(journal)
