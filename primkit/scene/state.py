@@ -66,17 +66,14 @@ class Step:
 class DriveState:
     """A robot that is driven by hand, and its map.
 
+    Raises ValueError if an argument is of another type, or the robot has no room on the board.
+
     Parameters
     ----------
     world, lidar, journal, moving, rng
         As for ``drive_scene``. The journal is made with the first step, and another one after ``undo``.
     executor : Executor, optional
         Who looks for shapes: ``AtOnce()`` by default, ``beside()`` in a thread of its own.
-
-    Raises
-    ------
-    ValueError
-        If an argument is of another type, or the robot has no room on the board.
     """
 
     def __init__(
@@ -122,15 +119,12 @@ class DriveState:
     def step(self, wheels: ArrayLike = STANDING_WHEELS) -> Step:
         """Turn the wheels for a period, scan, and map: ``move`` and ``map`` together.
 
+        Raises ValueError if the wheels are too fast; all then stays as it was.
+
         Parameters
         ----------
         wheels : array_like, shape (2,)
             Speeds of the left and the right wheel, radians per second, as ``wheels_for`` gives them.
-
-        Raises
-        ------
-        ValueError
-            If the wheels are too fast; all then stays as it was.
         """
         new, gone = self.move(wheels)
         return Step(new, gone, self.stopped, self.map())
@@ -209,11 +203,8 @@ class DriveState:
     def rearrange(self, world: World) -> None:
         """Put things where they are in another world, of the same size; the robot stays where it is.
 
-        Raises
-        ------
-        ValueError
-            If the map is one of things that stand still, the board is of another size, or the robot would stand in a
-            shape.
+        Raises ValueError if the map is one of things that stand still, the board is of another size, or the robot would
+        stand in a shape.
         """
         if not self.moving:
             raise ValueError("things must be allowed to move, as in drive_scene(world, moving=True)")
