@@ -136,6 +136,7 @@ def test_a_thumbnail_is_upright_and_holds_all():
     assert 'points="6,274 274,274"' in html
 
 
+@pytest.mark.filterwarnings("ignore::primkit.arguments.LikelyWrong")
 def test_a_huge_world_shows_its_first_shapes():
     world = pk.World([pk.Circle((0, 0), 0.1)] * (MOST_DRAWN + 1))
     html = world._repr_html_()
