@@ -92,14 +92,9 @@ def find_circle(
 
     Parameters
     ----------
-    points : array_like, shape (N, 2), metres
-    threshold : float
-        A point agrees when it is at most this far from the circle, in metres.
-    trials : int, random samples
-    refit : bool
-        Fit the circle to its inliers; without it the circle goes through three of the points, as in the
-        PyRANSAC library that the paper uses.
-    rng : seed or numpy.random.Generator, optional
+    points, threshold, trials, refit, rng
+        As for ``run_ransac``. Without ``refit`` the circle goes through three of the points, as in the PyRANSAC library
+        that the paper uses.
 
     Examples
     --------
