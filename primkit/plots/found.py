@@ -29,17 +29,7 @@ from ..shapes import Circle, Polygon, Shape
 from ..table import count
 from ..world import World
 from .labels import write_labels
-from .look import (
-    as_axes,
-    check_look,
-    draw_areas,
-    draw_board,
-    draw_center,
-    draw_legend,
-    marks,
-    outlines,
-    set_title,
-)
+from .look import as_axes, check_look, draw_areas, draw_board, draw_center, draw_legend, marks, outlines, set_title
 
 DASHES = (0, (3, 2))
 
