@@ -227,7 +227,7 @@ class MovingGrid:
             return np.zeros(len(left), dtype=bool)
         together = np.vstack([places[bare], left])
         pairs = cKDTree(together).query_pairs(CONNECTED, output_type="ndarray")
-        links = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(together), len(together)))
+        links = coo_array((np.ones(len(pairs)), pairs.T.astype(np.int32)), shape=(len(together), len(together)))
         n, part = connected_components(links, directed=False)
         part_gone, part_left = part[: len(gone)], part[len(gone) :]
         last = np.zeros(n, dtype=np.int64)
