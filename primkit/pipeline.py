@@ -172,7 +172,7 @@ def find_shapes(
     if labels is None:
         labels = _groups(local, n_shapes, settings, group_rng)
     together = [local[labels == label] for label in range(labels.max() + 1)]
-    account = Account.of(points, local, frame, 0 if grouped else np.count_nonzero(labels < 0))
+    account = Account.of(points, local, frame, 0 if grouped else int(np.count_nonzero(labels < 0)))
     steps = steps.within(frame)
     found: list[Thing] = []
     if settings.method == "published":
