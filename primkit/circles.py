@@ -38,31 +38,20 @@ GAUSS_NEWTON_STEPS = 50  # Gauss-Newton settles within five steps at 1 % noise, 
 
 
 def fit_circle(points: ArrayLike, method: Method = "geometric", *, weights: ArrayLike | None = None) -> Circle | None:
-    """Return the circle that fits the points best.
+    """Return the circle that fits the points best; None when fewer than three differ or they lie on one line.
+
+    On a 60 degree arc with 5 % noise Kasa's radius comes out about half as large as it is, on 90 degrees a sixth too
+    small; the others stay within a few percent.
+
+    Raises ValueError if points are not finite (N, 2), the method is unknown, or a weight is not a finite number >= 0.
 
     Parameters
     ----------
-    points : array_like, shape (N, 2)
-        Metres.
+    points : array_like, shape (N, 2), metres
     method : {"geometric", "taubin", "pratt", "kasa"}
         What "best" means; see the module's notes.
     weights : array_like, shape (N,), optional
         How much each point counts.
-
-    Returns
-    -------
-    Circle or None
-        None when fewer than three different points are given or they lie on one line.
-
-    Raises
-    ------
-    ValueError
-        If points are not finite (N, 2), the method is unknown, or the weights are not N finite numbers >= 0.
-
-    Notes
-    -----
-    On a 60 degree arc with 5 % noise Kasa's radius comes out about half as large as it is, on 90 degrees a
-    sixth too small; the others stay within a few percent.
 
     Examples
     --------
@@ -103,17 +92,14 @@ def find_circle(
 
     Parameters
     ----------
-    points : array_like, shape (N, 2)
-        Metres.
+    points : array_like, shape (N, 2), metres
     threshold : float
         A point agrees when it is at most this far from the circle, in metres.
-    trials : int
-        Random samples.
+    trials : int, random samples
     refit : bool
         Fit the circle to its inliers; without it the circle goes through three of the points, as in the
         PyRANSAC library that the paper uses.
-    rng : int or numpy.random.Generator, optional
-        Seed or generator.
+    rng : seed or numpy.random.Generator, optional
 
     Examples
     --------
@@ -127,30 +113,17 @@ def find_circle(
 def straightened(circle: Circle, points: Floats, noise_std: float, seen: float) -> Circle:
     """Return the circle as it would be without what grazing beams do to the ends of an arc.
 
-    A LiDAR errs along its beam. Where beams graze, at the ends of the arc that they see, too long a range carries the
-    point on into the shadow and inwards: the least-squares circle comes out too small, and too near. From all around
-    these errors even out.
+    Where beams graze, at the ends of the arc that they see, too long a range carries the point on into the shadow and
+    inwards: the least-squares circle comes out too small, and too near. From all around these errors even out.
 
-    Parameters
-    ----------
-    circle : Circle
-        Least-squares fit to the points.
-    points : array, shape (N, 2)
-        Seen from outside, metres.
-    noise_std : float
-        Standard deviation of the ranges, metres.
-    seen : float
-        Share of the circle that was seen, above 0 and at most 1.
+        u = noise_std^2 / (2 radius)      radius too small by f u, f = 6 (1 / seen - 1)^2; by a tenth at most
+                                          centre too near by (f + p) u
 
-    Notes
-    -----
-    With u = noise_std^2 / (2 radius), the least-squares radius is too small by f u with f = 6 (1 / seen - 1)^2, and the
-    centre too near by (f + p) u, with p the length of the mean of the unit vectors from the centre to the points. The
-    form of f was found by simulation: 30 where three tenths are seen, and no more for less, 12 for five twelfths, 6 for
-    one half, 1 for seven tenths; ``tests/test_circles.py`` repeats it. The radius is corrected by a tenth at most.
+    noise_std [m] is that of the ranges, seen the share of the circle that was seen, above 0 and at most 1, p the length
+    of the mean of the unit vectors from the centre to the points, shape (N, 2), metres. The form of f was found by
+    simulation: 30 where three tenths are seen, and no more for less, 12 for five twelfths, 6 for one half, 1 for seven
+    tenths; ``tests/test_circles.py`` repeats it.
 
-    Examples
-    --------
     >>> from primkit.shapes import Circle
     >>> half = Circle((0, 0), 0.05).outline(100)[:50]
     >>> straightened(Circle((0, 0), 0.05), half, 0.005, 0.5).radius > 0.051
@@ -171,14 +144,8 @@ def straightened(circle: Circle, points: Floats, noise_std: float, seen: float) 
 def nearer_circle(circle: Circle, points: Floats, weights: Floats) -> Circle | None:
     """Return a circle that is nearer to the points by one step of Gauss and Newton; None where that leads nowhere.
 
-    Parameters
-    ----------
-    circle : Circle
-        Near the solution: each step doubles the number of digits.
-    points : array, shape (N, 2)
-        Metres.
-    weights : array, shape (N,)
-        How much each point counts.
+    ``points``, shape (N, 2), metres; ``weights``, shape (N,): how much each counts. Near the solution each step doubles
+    the number of digits.
     """
     x, y = points.T
     params = _nearer(x, y, weights, np.array([*circle.center, circle.radius]))

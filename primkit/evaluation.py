@@ -16,9 +16,8 @@ Out: ``Report``: which found shape stands for which true one, how far off each v
 
 A missed true shape is wrong in every part; a false alarm is one more wrong shape.
 
-``protocol="paper"`` repeats the published scoring, which is no measure of how right a method is: what is too small
-counts as right, and a shape of a wrong kind ends it before anything is written, so that only runs without one are in
-the published tables. Such a report has ``crashed``.
+``protocol="paper"`` repeats the published scoring, which is no measure of how right a method is: see ``evaluate``. A
+shape of a wrong kind ends it before anything is written: only runs without one are in the published tables.
 
 Sources: the weights are the paper's; the assignment is optimal, Kuhn (1955), "The Hungarian method".
 """
@@ -43,10 +42,8 @@ Protocol = Literal["fair", "paper"]
 SHAPE_WEIGHT, CENTER_WEIGHT, DIMENSION_WEIGHT = 0.4, 0.3, 0.3
 GATE = 0.10  # m: a shape whose centre is farther off than a large circle's radius is another shape
 
-# The published scoring: both sides rounded to 1 cm, right when found - true < 1 mm (without an absolute value), and
-# accuracies to two decimals.
-PAPER_DIGITS = 2
-PAPER_TOLERANCE = 0.001
+# The published scoring: both sides rounded to 1 cm, right when found - true < 1 mm; accuracies to two decimals.
+PAPER_DIGITS, PAPER_TOLERANCE = 2, 0.001
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,12 +53,10 @@ class Match:
     Parameters
     ----------
     found, true : Circle or Polygon
-        The pair.
     center_error : array, shape (2,)
         found - true, x and y, metres.
     dimension_error : tuple of float, or None
-        found - true for each dimension, metres; None when kinds or numbers of corners differ: there is nothing to
-        compare.
+        found - true for each, metres; None when kinds or numbers of corners differ: there is nothing to compare.
     center_right, dimension_right : tuple of bool
         Which of the values count as right.
     """
@@ -90,14 +85,10 @@ class Report:
 
     Parameters
     ----------
-    matches : tuple of Match
-        Pairs, in the order of the true shapes.
-    missed : tuple of Circle and Polygon
-        True shapes that nothing found stands for.
-    false_alarms : tuple of Circle and Polygon
-        Found shapes that stand for nothing.
-    tolerance : float
-        Metres.
+    matches : tuple of Match, in the order of the true shapes
+    missed, false_alarms : tuple of Circle and Polygon
+        True shapes that nothing found stands for; found shapes that stand for nothing.
+    tolerance : float, metres
     protocol : {"fair", "paper"}
         How it was scored.
     crashed : bool
@@ -197,12 +188,13 @@ def evaluate(
 ) -> Report:
     """Compare what was found with the truth.
 
+    Raises ValueError if something else than shapes was found, or tolerance or gate is negative.
+
     Parameters
     ----------
     found : iterable of Detection, Circle and Polygon
         What ``find_shapes`` returned, or shapes of your own.
-    world : World
-        The truth.
+    world : World, the truth
     tolerance : float
         A value is right when it is at most this far from the truth, in metres.
     protocol : {"fair", "paper"}
@@ -212,11 +204,6 @@ def evaluate(
         (``Report.crashed``); see ``paper.published_values``. Tolerance and gate then play no part.
     gate : float
         A found shape whose centre is farther than this from a true one cannot stand for it, in metres.
-
-    Raises
-    ------
-    ValueError
-        If something else than shapes was found, or tolerance or gate is negative.
 
     Examples
     --------
@@ -259,15 +246,9 @@ def match(
 ) -> list[tuple[int, int]]:
     """Return pairs (index found, index true) with the least total centre distance, in the order of the true.
 
-    As many pairs as possible are made, each with its centres at most ``gate`` metres apart.
+    As many pairs as possible are made, each with its centres at most ``gate`` metres apart. Raises ValueError if the
+    gate is not a finite number >= 0.
 
-    Raises
-    ------
-    ValueError
-        If the gate is not a finite number >= 0.
-
-    Examples
-    --------
     >>> a, b = Circle((0, 0), 0.1), Circle((0.05, 0), 0.1)
     >>> match([b, a], [a, b])
     [(1, 0), (0, 1)]
@@ -290,20 +271,14 @@ def match(
 
 
 def _compare_fairly(found: Shape, true: Shape, tolerance: float) -> Match:
-    """Compare centroids and dimensions, both ways."""
-    center = found.centroid - true.centroid
-    if found.kind != true.kind or len(found.dimensions) != len(true.dimensions):
+    """Compare centroids and dimensions, both ways; sides in order under the best cyclic shift."""
+    center, ours, theirs = found.centroid - true.centroid, np.array(found.dimensions), np.array(true.dimensions)
+    if found.kind != true.kind or len(ours) != len(theirs):
         return Match(found, true, center, None, _within(center, tolerance), (False,) * _n_dimensions(true))
-    dimension = _dimension_error(found, true)
-    return Match(found, true, center, dimension, _within(center, tolerance), _within(dimension, tolerance))
-
-
-def _dimension_error(found: Shape, true: Shape) -> tuple[float, ...]:
-    """Return found - true for each dimension; sides in order under the best cyclic shift."""
-    ours, theirs = np.array(found.dimensions), np.array(true.dimensions)
     shifts = range(len(theirs)) if len(theirs) >= 3 else [0]
     errors = [np.roll(ours, shift) - theirs for shift in shifts]
-    return tuple(min(errors, key=lambda e: float(np.abs(e).sum())).tolist())
+    dimension = tuple(min(errors, key=lambda e: float(np.abs(e).sum())).tolist())
+    return Match(found, true, center, dimension, _within(center, tolerance), _within(dimension, tolerance))
 
 
 def _match_as_published(found: Sequence[Shape], true: Sequence[Shape]) -> list[tuple[int, int]]:

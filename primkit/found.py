@@ -34,19 +34,9 @@ SUPPOSED = "In brackets: supposed, not measured."
 class Found(list[Detection]):
     """A list of detections, from left to right, and what else the points are: the sum of all is all points.
 
-    Parameters
-    ----------
-    shapes : iterable of Detection
-        The shapes.
-    walls : sequence of Wall
-        Straight pieces.
-    others : sequence of Other
-        Things that are none of the kinds.
-    strays : array, shape (N, 2)
-        Points that lie on nothing, metres.
+    ``walls`` are straight pieces, ``others`` things that are none of the kinds, ``strays``, shape (N, 2), metres, the
+    points that lie on nothing.
 
-    Examples
-    --------
     >>> Found([]) == [], Found([])[:1]
     (True, no shapes found)
     """

@@ -1,7 +1,6 @@
 """Grid: the points that all scans have seen, on cells of one millimetre.
 
-Fifth step of the story. Scans of the same wall from many poses fall into the same cells, so that each
-place counts once, however often it was seen.
+Fifth step of the story. Scans of the same wall from many poses fall into the same cells: each place counts once.
 
 In:  ``Scans`` (any number of times), or (N, 2) points in metres.
 Out: ``grid.points()``: the centres of the occupied cells, shape (N, 2), metres, world frame.
@@ -37,20 +36,10 @@ ADDING = Lock()  # one for all grids, so that a grid can be copied: several thre
 
 
 class Grid:
-    """A set of occupied square cells.
+    """A set of occupied square cells with a side of ``resolution`` metres.
 
-    Parameters
-    ----------
-    resolution : float
-        Side of a cell in metres.
+    Raises ValueError if the resolution is not a finite number above zero.
 
-    Raises
-    ------
-    ValueError
-        If the resolution is not a finite number above zero.
-
-    Examples
-    --------
     >>> grid = Grid()
     >>> len(grid), grid.points().shape
     (0, (0, 2))
@@ -63,10 +52,7 @@ class Grid:
     def add(self, seen: Scans | ArrayLike) -> None:
         """Occupy the cells that the hits of scans (or plain points, shape (N, 2), metres) fall into.
 
-        Raises
-        ------
-        ValueError
-            If a point is not finite or lies too far out for the grid; the grid then stays as it was.
+        Raises ValueError if a point is not finite or lies too far out for the grid; the grid then stays as it was.
         """
         points = seen.points() if isinstance(seen, Scans) else as_points(seen)
         keys = as_keys(self.to_cells(points))
@@ -85,8 +71,6 @@ class Grid:
     def to_cells(self, points: ArrayLike) -> Ints:
         """Return the cell that each point lies in, shape (N, 2).
 
-        Examples
-        --------
         >>> Grid(0.001).to_cells([(0.1, 0.1), (-0.0004, 0.043)]).tolist()
         [[100, 100], [-1, 43]]
         """
@@ -100,8 +84,6 @@ class Grid:
     def to_points(self, cells: ArrayLike) -> Floats:
         """Return the centre of each cell, shape (N, 2), metres.
 
-        Examples
-        --------
         >>> Grid(0.001).to_points([(100, 100)]).tolist()
         [[0.1005, 0.1005]]
         """

@@ -12,8 +12,6 @@ Out: ``Scans``: ``.ranges``, shape (P, B), metres; ``.points()``, the hits, shap
 >>> seen.ranges.shape, round(float(seen.ranges[0, 0]), 3), len(seen.points())
 ((1, 100), 0.15, 9)
 
-A million scans do not fit in memory at once: ``scan_blocks`` hands them out block by block, the same to the last bit.
-
 Source: the sensor is that of the paper's section 3.1; field names follow the LaserScan message of ROS.
 """
 
@@ -56,32 +54,23 @@ FARTHEST_HIT, TWICE_ROUND, DEGREES = 1000.0, 4 * np.pi, 5.0
 
 @dataclass(frozen=True)
 class Lidar:
-    """A LiDAR that turns once: the paper's, unless told otherwise.
+    """A LiDAR that turns once: the paper's, unless told otherwise. Raises ValueError if an argument is out of range.
 
     Parameters
     ----------
     beams : int
-        Number of beams, evenly spread over the full turn; beam 0 looks straight ahead, the others follow
-        counter-clockwise.
+        Evenly spread over the full turn; beam 0 looks straight ahead, the others follow counter-clockwise.
     range_min, range_max : float
         Nearest and farthest distance that is measured, in metres. A nearer outline still blocks the beam.
     noise_std : float
         Standard deviation of the error of each range, in metres.
-    period : float
-        Time that one scan takes, in seconds.
-    dropout : float
-        Share of the hits that are lost (from 0 to 1).
-    spurious : float
-        Share of all beams that return a random range, whatever is there (from 0 to 1).
+    period : float, seconds that one scan takes
+    dropout, spurious : float
+        Shares from 0 to 1: of the hits, that are lost; of all beams, that return a random range, whatever is there.
     model : {"exact", "webots"}
         ``"exact"``: each beam meets the outline where geometry says. ``"webots"``: as the simulator of the paper's
         authors renders it, wrong by 1.7 mm (root mean square) along an outline, see ``rendered``; its beams spread over
         6.28 rad, the first one looks back, and no range equals ``range_max``.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of its range.
 
     Examples
     --------
@@ -129,31 +118,28 @@ class Lidar:
         return np.arange(self.beams, dtype=float) * self.angle_increment
 
 
+def as_lidar(lidar: Lidar | None) -> Lidar:
+    """Return the sensor, the paper's for None, or refuse what is none."""
+    check_type(lidar, (Lidar, type(None)), "lidar must be a Lidar, such as Lidar()")
+    return Lidar() if lidar is None else lidar
+
+
 @dataclass(frozen=True, eq=False)
 class Scans:
     """What the LiDAR saw from each pose.
 
+    Raises ValueError if an array is none of these, a pose or an angle is not finite, or a range is NaN or below zero.
+    Warns (``LikelyWrong``) if headings or angles look like degrees, or ranges like millimetres.
+
     Parameters
     ----------
-    poses : array, shape (P, 3)
-        x [m], y [m], heading [rad], world frame.
-    angles : array, shape (B,)
-        Bearing of each beam from the heading, radians.
+    poses : array, shape (P, 3): x [m], y [m], heading [rad], world frame
+    angles : array, shape (B,): bearing of each beam from the heading, radians
     ranges : array, shape (P, B)
         Measured distances in metres; ``inf`` or 0 where a beam met nothing. ``as_ranges`` makes them of what a
         sensor's driver writes.
     inside : array of bool, shape (P,)
         Poses that lie in a shape: they see nothing, but for a rendered LiDAR, which sees the others.
-
-    Raises
-    ------
-    ValueError
-        If an array is none of these, a pose or an angle is not finite, or a range is NaN or below zero.
-
-    Warns
-    -----
-    LikelyWrong
-        If headings or angles look like degrees, or ranges like millimetres.
 
     Examples
     --------
@@ -219,11 +205,9 @@ class Scans:
 def as_ranges(ranges: ArrayLike, range_max: float = np.inf) -> Floats:
     """Return what a sensor's driver writes as ranges, of the same shape: ``inf`` for all that is no hit.
 
-    A hit lies above 0 and below the sensor's greatest range. NaN, 0, negative numbers, infinity and the greatest range
-    itself are what drivers write for a beam that met nothing, or went wrong.
+    A hit lies above 0 and below the sensor's greatest range; all else is what drivers write for a beam that met nothing
+    or went wrong.
 
-    Examples
-    --------
     >>> as_ranges([0.2, 0.0, float("nan"), -1.0, 81.83, 81.82], range_max=81.83).tolist()
     [0.2, inf, inf, inf, inf, 81.82]
     """
@@ -262,35 +246,21 @@ def _checked_before(poses: Floats, angles: Floats, ranges: Floats, inside: Bools
 
 
 def scan(
-    world: World,
-    poses: ArrayLike,
-    lidar: Lidar | None = None,
-    *,
-    rng: int | np.random.Generator | None = None,
+    world: World, poses: ArrayLike, lidar: Lidar | None = None, *, rng: int | np.random.Generator | None = None
 ) -> Scans:
-    """Scan the world once from each pose.
+    """Scan the world once from each pose. Raises ValueError if the poses are not finite or not of shape (P, 3).
+
+    A beam without a hit in range reads ``inf``. Noise is added first and the reading is then clipped to the sensor's
+    limits. A pose inside a shape sees nothing, and ``Scans.inside`` says so.
 
     Parameters
     ----------
     world : World
-        What stands on the board.
     poses : array_like, shape (P, 3)
         x [m], y [m], heading [rad], world frame; one pose alone may have shape (3,).
-    lidar : Lidar, optional
-        The sensor; the paper's by default.
-    rng : int or numpy.random.Generator, optional
-        Seed or generator for noise, dropouts and spurious returns.
-
-    Returns
-    -------
-    Scans
-        A beam without a hit in range reads ``inf``. Noise is added first and the reading is then clipped
-        to the sensor's limits. A pose inside a shape sees nothing, and ``Scans.inside`` says so.
-
-    Raises
-    ------
-    ValueError
-        If the poses are not finite or not of shape (P, 3).
+    lidar : Lidar, default Lidar()
+    rng : seed or numpy.random.Generator, optional
+        For noise, dropouts and spurious returns.
 
     Examples
     --------
@@ -315,30 +285,13 @@ def scan_blocks(
     size: int = SCANS_AT_ONCE,
     rng: int | np.random.Generator | None = None,
 ) -> Iterator[Scans]:
-    """Scan the world once from each pose, and hand out the scans block by block.
+    """Scan the world once from each pose, and hand out the scans in blocks of ``size``; the last one may have fewer.
 
-    For more scans than memory holds: the ranges of a million take 800 MB, a block of ten thousand 8 MB. Together
-    the blocks are what ``scan`` returns, to the last bit, noise included.
+    For more scans than memory holds: the ranges of a million take 800 MB, a block of ten thousand 8 MB. Each block is
+    computed when it is asked for; together they are what ``scan`` returns for the other arguments, to the last bit,
+    noise included. There is at least one, empty when there are no poses. Raises ValueError as ``scan``, or if the size
+    is not a whole number of at least 1; at once, not at the first block.
 
-    Parameters
-    ----------
-    world, poses, lidar, rng
-        As for ``scan``.
-    size : int
-        Scans in a block; the last one may have fewer.
-
-    Returns
-    -------
-    iterator of Scans
-        At least one, which is empty when there are no poses. Each is computed when it is asked for.
-
-    Raises
-    ------
-    ValueError
-        As ``scan``, or if the size is not a whole number of at least 1; at once, not at the first block.
-
-    Examples
-    --------
     >>> [len(scans) for scans in scan_blocks(World(), np.zeros((5, 3)), size=2)]
     [2, 2, 1]
     """
@@ -350,8 +303,7 @@ def _scanned(
     world: World, poses: Floats, lidar: Lidar | None, rng: int | np.random.Generator | None, size: int
 ) -> Iterator[Scans]:
     """Check the other arguments and return the blocks."""
-    lidar = Lidar() if lidar is None else lidar
-    check_type(lidar, Lidar, "lidar must be a Lidar, such as Lidar()")
+    lidar = as_lidar(lidar)
     faults = Faults(lidar, len(poses), min(size, SCANS_AT_ONCE), rng)
     starts = range(0, max(1, len(poses)), size)
     return (_block(world, poses[start : start + size], lidar, faults) for start in starts)

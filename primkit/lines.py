@@ -21,22 +21,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arguments import Floats, as_count, as_points, as_positive, as_rng, as_share
-from .ransac import Consensus, Model, run_ransac
+from .ransac import Model, run_ransac
 
 
 @dataclass(frozen=True)
 class Line:
-    """A line ``n . p = d``.
+    """A line ``n . p = d``: ``angle`` of the unit normal n, radians; ``offset`` d from the origin along n, metres.
 
-    Parameters
-    ----------
-    angle : float
-        Bearing of the unit normal n, radians.
-    offset : float
-        Signed distance d of the line from the origin along n, metres.
-
-    Examples
-    --------
     >>> vertical = Line(angle=0.0, offset=0.2)
     >>> vertical.signed_distance([(0.2, 5.0), (0.3, 0.0)]).round(3).tolist()
     [0.0, 0.1]
@@ -73,25 +64,10 @@ class FoundLine:
 
 
 def fit_line(points: ArrayLike) -> Line | None:
-    """Return the line with the least squared distances to the points (total least squares).
+    """Return the line with the least squared distances to points, shape (N, 2), metres (total least squares).
 
-    Parameters
-    ----------
-    points : array_like, shape (N, 2)
-        Metres.
+    None when fewer than two of them are different. Raises ValueError if points are not finite (N, 2).
 
-    Returns
-    -------
-    Line or None
-        None when fewer than two different points are given.
-
-    Raises
-    ------
-    ValueError
-        If points are not finite (N, 2).
-
-    Examples
-    --------
     >>> line = fit_line([(0, 1), (1, 1), (2, 1)])
     >>> round(abs(line.offset), 6), abs(line.normal).round(6).tolist()
     (1.0, [0.0, 1.0])
@@ -115,33 +91,22 @@ def find_lines(
 ) -> list[FoundLine]:
     """Return lines found one after the other, each on the points that the lines before it left.
 
+    Greedy: the first line takes every point near it, those of its neighbours around a corner included. Raises
+    ValueError if points are not finite (N, 2), or another argument is out of its range.
+
     Parameters
     ----------
-    points : array_like, shape (N, 2)
-        Metres.
+    points : array_like, shape (N, 2), metres
     threshold : float
         A point lies on a line when it is at most this far from it, in metres.
-    left_over : float
-        Stop when at most this share of the points is left.
-    most : int
-        Stop after this many lines.
-    trials : int
-        Random samples for each line.
+    left_over, most
+        Stop when at most this share of the points is left, or after this many lines.
+    trials : int, random samples for each line
     refit : bool
         Fit each line to its inliers by least squares.
     model : Model, optional
         The line with a fit of your own; ``LINE`` by default.
-    rng : int or numpy.random.Generator, optional
-        Seed or generator.
-
-    Raises
-    ------
-    ValueError
-        If points are not finite (N, 2), or another argument is out of its range.
-
-    Notes
-    -----
-    Greedy: the first line takes every point near it, those of its neighbours around a corner included.
+    rng : seed or numpy.random.Generator, optional
 
     Examples
     --------
@@ -158,16 +123,11 @@ def find_lines(
         consensus = run_ransac(points[rest], model or LINE, threshold, trials=trials, refit=refit, rng=rng)
         if consensus is None:
             break
-        found.append(_found(consensus, rest, len(points)))
-        left &= ~found[-1].inliers
+        inliers = np.zeros(len(points), dtype=bool)
+        inliers[rest[consensus.inliers]] = True
+        found.append(FoundLine(Line(*consensus.params.tolist()), inliers))
+        left &= ~inliers
     return found
-
-
-def _found(consensus: Consensus, rest: NDArray[np.int64], n: int) -> FoundLine:
-    """Return the line with its inliers as a mask over all n points."""
-    inliers = np.zeros(n, dtype=bool)
-    inliers[rest[consensus.inliers]] = True
-    return FoundLine(Line(*consensus.params.tolist()), inliers)
 
 
 # --- the line as RANSAC's model: parameters (angle, offset) -----------------------------------------------------

@@ -46,7 +46,7 @@ BLOCK = 500  # lines that are worked on at a time
 # A pentagon's one dimension is the way from its lowest to its leftmost point, though the truth has its radius: 1.148.
 LOWEST_TO_LEFTMOST = float(np.hypot(*(PENTAGON[0] - PENTAGON[4])))
 # A true pentagon of radius 1 is so high; its middle lies one radius above its lowest corner.
-HEIGHT = float(np.ptp(PENTAGON[:, 1]))
+PENTAGON_HEIGHT = float(np.ptp(PENTAGON[:, 1]))
 
 
 def one_start_kmeans(points: Floats, k: int, rng: np.random.Generator) -> Labels:
@@ -246,7 +246,7 @@ def published_values(shape: Shape, *, truth: bool) -> dict[str, float]:
     elif shape.kind == "triangle" and truth:
         x, y = (low[0] + high[0]) / 2, low[1]
     elif shape.kind == "pentagon" and truth:
-        sizes = {"width": height / HEIGHT}
+        sizes = {"width": height / PENTAGON_HEIGHT}
         x, y = corners[corners[:, 1].argmin()] + (0, sizes["width"])
     elif shape.kind == "pentagon":
         sizes = {"width": np.hypot(*(corners[corners[:, 1].argmin()] - corners[corners[:, 0].argmin()]))}

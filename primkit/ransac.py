@@ -1,7 +1,7 @@
 """RANSAC: the one consensus loop, for any model.
 
-Points that belong to one line or circle lie among many that do not. RANSAC draws the few points that fix a
-model, counts how many others agree with it, and keeps the model with the largest consensus set.
+RANSAC draws the few points that fix a line or circle, counts how many others agree with it, and keeps the model with
+the largest consensus set. All samples are scored as one matrix, trials x points, in blocks that fit the cache.
 
 In:  points, shape (N, 2), metres; a ``Model``; a threshold in metres.
 Out: ``Consensus``: the model's parameters and which points agree with them; ``None`` when no sample fixed one.
@@ -10,8 +10,6 @@ Out: ``Consensus``: the model's parameters and which points agree with them; ``N
 >>> points = [(0, 0), (1, 0), (2, 0), (3, 0), (1, 1)]
 >>> run_ransac(points, LINE, threshold=0.01, trials=50, rng=0).inliers.tolist()
 [True, True, True, True, False]
-
-All samples are drawn at once and scored as a matrix, trials x points, in blocks that fit the cache.
 
 Sources: Fischler and Bolles (1981), "Random sample consensus"; the truncated score is that of Torr and
 Zisserman (2000), "MLESAC"; the refit that of Chum, Matas and Kittler (2003), "Locally optimized RANSAC".
@@ -57,14 +55,9 @@ class Model:
 
 @dataclass(frozen=True, eq=False)
 class Consensus:
-    """The model that most points agree with.
+    """The model that most points agree with: its parameters, shape (Q,).
 
-    Parameters
-    ----------
-    params : array, shape (Q,)
-        The model's parameters.
-    inliers : array of bool, shape (N,)
-        The points within the threshold of exactly this model, boundary included.
+    ``inliers``, shape (N,), are the points within the threshold of exactly this model, boundary included.
     """
 
     params: Floats
@@ -81,36 +74,25 @@ def run_ransac(
     refit: bool = True,
     rng: int | np.random.Generator | None = None,
 ) -> Consensus | None:
-    """Return the model with the largest consensus set among random samples.
+    """Return the model with the largest consensus set among random samples; None when no sample fixes one.
+
+    Raises ValueError if points are not finite (N, 2), the threshold is negative, there is not at least one trial, or
+    the score is unknown.
 
     Parameters
     ----------
-    points : array_like, shape (N, 2)
-        Metres.
+    points : array_like, shape (N, 2), metres
     model : Model
         What is looked for: ``lines.LINE``, ``circles.CIRCLE`` or one of your own.
     threshold : float
         A point agrees when its residual is at most this, in metres.
-    trials : int
-        Number of samples; see ``trials_needed``.
+    trials : int, number of samples: see ``trials_needed``
     score : {"count", "truncated"}
-        What makes a model good: the number of its inliers, or the sum of squared residuals with each
-        held at threshold^2, which also asks how well the inliers fit.
+        What makes a model good: the number of its inliers, or the sum of min(residual, threshold)^2, which also asks
+        how well the inliers fit.
     refit : bool
         Fit the model to its inliers, and take the inliers anew, until nothing changes.
-    rng : int or numpy.random.Generator, optional
-        Seed or generator.
-
-    Returns
-    -------
-    Consensus or None
-        None when there are fewer points than a sample needs, or every sample was degenerate.
-
-    Raises
-    ------
-    ValueError
-        If points are not finite (N, 2), the threshold is negative, there is not at least one trial, or the score
-        is unknown.
+    rng : seed or numpy.random.Generator, optional
 
     Examples
     --------
@@ -156,16 +138,9 @@ def draw_samples(n: int, size: int, trials: int, rng: np.random.Generator) -> ND
 def trials_needed(inlier_share: float, sample_size: int, confidence: float = 0.99) -> int:
     """Return how many samples make it likely that one is all inliers.
 
-    ``N = log(1 - p) / log(1 - w^m)`` with confidence p, share of inliers w and sample size m (Fischler and
-    Bolles, 1981).
+    ``N = log(1 - p) / log(1 - w^m)`` with confidence p, share of inliers w and sample size m (Fischler and Bolles,
+    1981). Raises ValueError if the share is not above 0 and at most 1, or the confidence not between 0 and 1.
 
-    Raises
-    ------
-    ValueError
-        If the share is not above 0 and at most 1, or the confidence not between 0 and 1.
-
-    Examples
-    --------
     >>> trials_needed(0.5, 2), trials_needed(0.5, 3), trials_needed(1.0, 2)
     (17, 35, 1)
     """

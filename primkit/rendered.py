@@ -1,8 +1,7 @@
 """Rendered: a LiDAR as a simulator draws it, with a camera's pictures in the place of rays.
 
-The sensor of the paper is no exact one. Webots renders a LiDAR: four cameras look along the quarter turns, each with
-a picture of a few texels, and a beam reads the depth of the nearest texel, though it passes beside the middle of it.
-Here the same is done with exact geometry:
+Webots, the paper's simulator, renders a LiDAR: four cameras look along the quarter turns, and a beam reads the depth of
+the nearest texel of their pictures, though it passes beside the middle of it. The same, with exact geometry:
 
     beam i at the bearing a, its camera along b    a = (i + 1/2) 6.28 / beams - 6.28 / 2, b the nearest quarter turn
     its texel, of n = ceil(2 / tan(6.28 / beams))  k = floor(n (1 - tan(a - b)) / 2)
@@ -11,8 +10,7 @@ Here the same is done with exact geometry:
 
 t is the way along m to the nearest side that faces the robot: back faces are not drawn, so that from inside a shape
 the others are seen. A circle is drawn as a cylinder with 36 faces. Neither z nor r is told below the sensor's least
-range, nor from its greatest on. Off the middle of its texel a beam is wrong by millimetres, always by the same: there
-is no noise in it.
+range, nor from its greatest on. The error, of millimetres, is always the same: there is no noise in it.
 
 In:  a ``World``; poses, shape (P, 3): x [m], y [m], heading [rad]; the beams' bearings, shape (B,); limits in metres.
 Out: ranges, shape (P, B), metres; ``inf`` where there is none.
@@ -32,11 +30,11 @@ import numpy as np
 
 from .arguments import Bools, Floats
 from .robot import inside_shape
-from .shapes import Circle, Shape
+from .shapes import Circle
 from .world import World
 
 FIELD = 6.28  # rad: the published field of view, a little less than a full turn
-QUARTER = np.pi / 2
+QUARTER_TURN = np.pi / 2  # rad, from camera to camera
 FACES = 36  # of a cylinder
 LEAST_BEAMS = 8  # fewer would leave a camera without a texel
 ON_SIDE = 1e-9  # a ray so close to a corner, in lengths of the side, meets one of its two sides
@@ -54,15 +52,15 @@ def rendered_bearings(beams: int) -> Floats:
 
 def render(world: World, poses: Floats, angles: Floats, range_max: float, range_min: float) -> tuple[Floats, Bools]:
     """Return what a rendered LiDAR reads, shape (P, B), metres, and which poses lie in a shape, shape (P,)."""
-    camera = np.rint(angles / QUARTER)
-    off = angles - camera * QUARTER  # a - b
+    camera = np.rint(angles / QUARTER_TURN)
+    off = angles - camera * QUARTER_TURN  # a - b
     n = int(np.ceil(2 / np.tan(FIELD / len(angles))))
     texel = np.clip(np.floor(n * (1 - np.tan(off)) / 2), 0, n - 1)
     middle = np.arctan(1 - 2 * (texel + 0.5) / n)  # m - b
     starts, ways = _sides(world)
     ranges = np.empty((len(poses), len(angles)))
     for row, (x, y, heading) in enumerate(poses):
-        turned = heading + camera * QUARTER + middle
+        turned = heading + camera * QUARTER_TURN + middle
         rays = np.column_stack([np.cos(turned), np.sin(turned)])
         depth = _within(_first_front(starts - (x, y), ways, rays) * np.cos(middle), range_min, range_max)
         ranges[row] = _within(depth / np.cos(off), range_min, range_max)
@@ -71,15 +69,10 @@ def render(world: World, poses: Floats, angles: Floats, range_max: float, range_
 
 def _sides(world: World) -> tuple[Floats, Floats]:
     """Return where the sides that are drawn begin, and the ways to their ends, shape (K, 2) each, metres."""
-    rings = [_corners(shape) for shape in world.shapes]
+    rings = [shape.outline(FACES) if isinstance(shape, Circle) else shape.vertices for shape in world.shapes]
     ways = [np.concatenate([ring[1:], ring[:1]]) - ring for ring in rings]
     walls = world.walls[:, ::-1]  # they face inwards
     return np.vstack([*rings, walls[:, 0]]), np.vstack([*ways, walls[:, 1] - walls[:, 0]])
-
-
-def _corners(shape: Shape) -> Floats:
-    """Return the corners that are drawn, counter-clockwise, shape (K, 2)."""
-    return shape.outline(FACES) if isinstance(shape, Circle) else shape.vertices
 
 
 def _first_front(starts: Floats, ways: Floats, rays: Floats) -> Floats:

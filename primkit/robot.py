@@ -23,9 +23,9 @@ Source: the paper's section 3.2, "Robot Movement", with the numbers of its publi
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from .arguments import Floats, as_point, as_points, as_poses, as_positive, check_type, limit, short
+from .arguments import Bools, Floats, as_point, as_points, as_poses, as_positive, check_type, limit, short
 from .world import World
 
 STEP_X = 0.15  # m between way-points along x
@@ -38,21 +38,17 @@ FASTEST = 6.28  # rad/s: a wheel's greatest speed
 BODY = 0.037  # m: radius of the body, a disc around the middle of the axle
 PUBLISHED_HEADING = np.radians(0.15)  # in all of the paper's runs
 PERIOD = 0.1  # s: wheels keep their speeds from one scan to the next
-# m: the way is looked at in steps of this length, and the body keeps this far from everything: between two clear places
-# that lie so close together nothing can be touched.
-CLEAR = 0.0001
+CLEAR = 0.0001  # m: so long are the steps in which a way is looked at, and so far the body keeps from everything
 # What grows with a board's side or with time, and would fill the memory: boards of 120 m, drives of two kilometres.
 MOST_PLACES, MOST_STEPS = 1_000_000, 20_000_000
 
 
-def waypoints(size: float = 1.0) -> NDArray[np.float64]:
+def waypoints(size: float = 1.0) -> Floats:
     """Return the paper's way-points for a board of ``size`` metres, shape (P, 3).
 
     x runs from ``-size/2`` in steps of 0.15 m up to ``size/2 - 0.1`` m, y from ``-size/2`` to ``size/2``
     in steps of 0.10 m, column by column; the heading is 0. A board of 1 m has 7 x 11 = 77 of them.
 
-    Examples
-    --------
     >>> waypoints()[[0, 1, -1]].round(3).tolist()
     [[-0.5, -0.5, 0.0], [-0.5, -0.4, 0.0], [0.4, 0.5, 0.0]]
     """
@@ -69,8 +65,6 @@ def published_poses(size: float = 1.0) -> Floats:
 
     It scans at those inside a shape, too, and its heading is 0.15 degrees.
 
-    Examples
-    --------
     >>> published_poses().shape
     (76, 3)
     """
@@ -79,7 +73,7 @@ def published_poses(size: float = 1.0) -> Floats:
     return poses
 
 
-def inside_shape(world: World, poses: NDArray[np.float64]) -> NDArray[np.bool_]:
+def inside_shape(world: World, poses: Floats) -> Bools:
     """Tell for each pose whether its position lies in a shape or on an outline, shape (P,)."""
     inside = np.zeros(len(poses), dtype=bool)
     for shape in world.shapes:
@@ -87,14 +81,11 @@ def inside_shape(world: World, poses: NDArray[np.float64]) -> NDArray[np.bool_]:
     return inside
 
 
-def teleport_poses(world: World) -> NDArray[np.float64]:
+def teleport_poses(world: World) -> Floats:
     """Return the way-points that the robot can be set down on, shape (P, 3).
 
-    Those inside a shape are left out, and those nearer to a wall than the robot's radius; ``skipped_waypoints``
-    returns them.
+    Left out are those inside a shape, and those nearer to a wall than the robot's radius: ``skipped_waypoints``.
 
-    Examples
-    --------
     >>> from primkit.shapes import Circle
     >>> world = World([Circle((0.1, 0.0), 0.05)])
     >>> len(teleport_poses(world)), skipped_waypoints(world).round(3).tolist()
@@ -103,12 +94,12 @@ def teleport_poses(world: World) -> NDArray[np.float64]:
     return _on_board(world)[0]
 
 
-def skipped_waypoints(world: World) -> NDArray[np.float64]:
+def skipped_waypoints(world: World) -> Floats:
     """Return the way-points inside a shape or too near to a wall, shape (Q, 3); the robot is not set down there."""
     return _on_board(world)[1]
 
 
-def _on_board(world: World) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _on_board(world: World) -> tuple[Floats, Floats]:
     """Return the way-points with room for the robot, and the others."""
     check_type(world, World, "world must be a World")
     poses = waypoints(world.size)
@@ -118,20 +109,11 @@ def _on_board(world: World) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return poses[~barred], poses[barred]
 
 
-def moved(poses: ArrayLike, wheels: ArrayLike, time: float | NDArray[np.float64]) -> NDArray[np.float64]:
+def moved(poses: ArrayLike, wheels: ArrayLike, time: float | Floats) -> Floats:
     """Return where robots are after their wheels have turned for a while, with nothing in the way, shape as ``poses``.
 
-    Parameters
-    ----------
-    poses : array_like, shape (..., 3)
-        x [m], y [m], heading [rad].
-    wheels : array_like, shape (..., 2)
-        Speeds of the left and the right wheel, radians per second.
-    time : float or array_like, shape (...)
-        Seconds.
+    ``wheels``, shape (..., 2): speeds of the left and the right wheel, rad/s; ``time``, shape (...), seconds.
 
-    Examples
-    --------
     Wheels at equal and opposite speeds turn it on the spot:
 
     >>> moved((0, 0, 0), (-1, 1), 2.0).round(4).tolist()
@@ -145,51 +127,26 @@ def moved(poses: ArrayLike, wheels: ArrayLike, time: float | NDArray[np.float64]
     return pose + step
 
 
-def clearance(world: World, places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return how far the robot's body is from the nearest shape or edge of the board, shape (N,), metres.
+def clearance(world: World, places: Floats) -> Floats:
+    """Return how far the robot's body, at places, shape (N, 2), is from the nearest shape or edge, shape (N,), metres.
 
-    Parameters
-    ----------
-    world : World
-        What stands on the board.
-    places : array, shape (N, 2)
-        The robot's x and y, metres.
-
-    Returns
-    -------
-    array, shape (N,)
-        Below zero where the body would be in a shape or beyond the edge.
+    Below zero it would be in a shape or beyond the edge of the board.
     """
-    free: NDArray[np.float64] = world.size / 2 - np.abs(places).max(axis=1)
+    free: Floats = world.size / 2 - np.abs(places).max(axis=1)
     for shape in world.shapes:
         free = np.minimum(free, shape.signed_distance(places))
     return free - BODY
 
 
-def advance(world: World, pose: ArrayLike, wheels: ArrayLike, time: float = PERIOD) -> tuple[NDArray[np.float64], bool]:
+def advance(world: World, pose: ArrayLike, wheels: ArrayLike, time: float = PERIOD) -> tuple[Floats, bool]:
     """Return the robot's pose after its wheels have turned for a while, and whether something stopped it.
 
     It stops where its body would touch a shape or leave the board, at most a fifth of a millimetre before; its wheels
-    then slip, and it only turns.
+    then slip, and it only turns. Raises ValueError if an argument is out of its range, or the body is not clear to
+    begin with.
 
-    Parameters
-    ----------
-    world : World
-        What stands on the board.
-    pose : array_like, shape (3,)
-        x [m], y [m], heading [rad]; the body must be clear of everything.
-    wheels : array_like, shape (2,)
-        Speeds of the left and the right wheel, radians per second, at most ``FASTEST`` either way.
-    time : float
-        Seconds.
+    ``pose``, shape (3,), and ``wheels``, shape (2,), as in a drive; ``time`` in seconds.
 
-    Raises
-    ------
-    ValueError
-        If an argument is out of its range, or the body is not clear to begin with.
-
-    Examples
-    --------
     >>> from primkit.shapes import Circle
     >>> pose, stopped = advance(World([Circle((0.1, 0.0), 0.05)]), (0, 0, 0), (6.28, 6.28), time=1.0)
     >>> round(float(pose[0]), 3), stopped
@@ -212,27 +169,19 @@ def advance(world: World, pose: ArrayLike, wheels: ArrayLike, time: float = PERI
     return np.array([*poses[blocked[0], :2], poses[-1, 2]]), True
 
 
-def drive(
-    world: World, wheels: ArrayLike, start: ArrayLike | None = None, *, period: float = PERIOD
-) -> NDArray[np.float64]:
+def drive(world: World, wheels: ArrayLike, start: ArrayLike | None = None, *, period: float = PERIOD) -> Floats:
     """Return the poses of a drive, shape (T + 1, 3): the start, and one after each pair of wheel speeds.
+
+    Raises ValueError if an argument is out of its range, or the body is not clear at the start.
 
     Parameters
     ----------
     world : World
-        What stands on the board.
     wheels : array_like, shape (T, 2)
-        Speeds of the left and the right wheel, radians per second, at most 6.28 either way; each pair is
-        held for a period.
+        Speeds of the left and the right wheel, rad/s, at most 6.28 either way; each pair is held for a period.
     start : array_like, shape (3,), optional
         x [m], y [m], heading [rad]; the free place nearest to the board's centre when not given.
-    period : float
-        Seconds between two scans.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of its range, or the body is not clear at the start.
+    period : float, seconds between two scans
 
     Examples
     --------
@@ -248,16 +197,11 @@ def drive(
     return np.array(poses)
 
 
-def start_pose(world: World) -> NDArray[np.float64]:
+def start_pose(world: World) -> Floats:
     """Return the free place nearest to the board's centre, on a grid of a centimetre, heading 0, shape (3,).
 
-    Raises
-    ------
-    ValueError
-        If the body has no room anywhere.
+    Raises ValueError if the body has no room anywhere.
 
-    Examples
-    --------
     >>> start_pose(World()).tolist()
     [0.0, 0.0, 0.0]
     """
@@ -274,7 +218,7 @@ def start_pose(world: World) -> NDArray[np.float64]:
     raise ValueError("the board must have room for the robot, got none between its shapes")
 
 
-def _as_pose(pose: ArrayLike) -> NDArray[np.float64]:
+def _as_pose(pose: ArrayLike) -> Floats:
     """Return one pose, shape (3,), or say in one sentence what is wrong."""
     poses = as_poses(pose)
     if len(poses) != 1:
@@ -288,13 +232,13 @@ def check_places(size: float, room: float) -> None:
     limit(size / room * size, MOST_PLACES, rule, "is it in millimetres?")
 
 
-def check_way(wheels: NDArray[np.float64], period: float) -> None:
+def check_way(wheels: Floats, period: float) -> None:
     """Refuse a drive that would take too long to follow in steps of a tenth of a millimetre."""
     steps = WHEEL / 2 / CLEAR * period * float(np.abs(wheels.sum(axis=1)).sum())
     limit(steps, MOST_STEPS, "a drive must take at most {} steps of 0.1 mm", "is the period in seconds?")
 
 
-def not_too_fast(wheels: NDArray[np.float64]) -> NDArray[np.float64]:
+def not_too_fast(wheels: Floats) -> Floats:
     """Return wheel speeds, or refuse the fastest in one sentence."""
     fastest = np.abs(wheels).max(initial=0.0)
     if fastest > FASTEST:

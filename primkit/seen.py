@@ -38,8 +38,6 @@ def is_seen(places: Floats, points: Floats) -> Bools:
 def seen_shares(shape: Shape, points: Floats) -> tuple[float, ...]:
     """Return the share of each side, or of the whole circle, that was seen.
 
-    Examples
-    --------
     >>> from primkit.shapes import Polygon
     >>> square = Polygon([(0, 0), (0.1, 0), (0.1, 0.1), (0, 0.1)])
     >>> [round(share, 1) for share in seen_shares(square, np.array([(0.0, 0.05), (0.05, 0.0)]))]

@@ -18,7 +18,7 @@ Rousseeuw (1987); linking is DBSCAN, Ester, Kriegel, Sander and Xu (1996). The f
 from __future__ import annotations
 
 import warnings
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -47,12 +47,14 @@ def segment(
     resolution: float = 0.001,
     rng: int | np.random.Generator | None = None,
 ) -> Labels:
-    """Return a label for each point: which group it belongs to.
+    """Return a label for each point: which group it belongs to, shape (N,).
+
+    Raises ValueError if points are not finite (N, 2), more shapes are asked for than there are different points, or any
+    number with linking.
 
     Parameters
     ----------
-    points : array_like, shape (N, 2)
-        Metres.
+    points : array_like, shape (N, 2), metres
     n_shapes : int, optional
         Number of groups. When it is not given, K-Means takes the number with the best silhouette; linking
         needs no number and takes none.
@@ -60,14 +62,8 @@ def segment(
         How to group.
     resolution : float
         Side of the cells that the points lie on, metres: linking reaches over 22 of them.
-    rng : int or numpy.random.Generator, optional
-        Seed or generator for K-Means' starts.
-
-    Raises
-    ------
-    ValueError
-        If points are not finite (N, 2), more shapes are asked for than there are different points,
-        or any number with linking.
+    rng : seed or numpy.random.Generator, optional
+        For K-Means' starts.
 
     Examples
     --------
@@ -99,18 +95,11 @@ def check_count(n_shapes: int, points: Floats, name: str = "n_shapes") -> None:
 def kmeans(points: ArrayLike, k: int, *, rng: int | np.random.Generator | None = None) -> Labels:
     """Return labels that make the k groups as compact as possible, shape (N,).
 
-    Raises
-    ------
-    ValueError
-        If k is below one or larger than the number of different points.
+    Raises ValueError if k is below one or larger than the number of different points.
 
-    Notes
-    -----
-    Points closer than rounding can tell (a hundred-millionth of the extent) may be left in one group, though k
-    asked for two.
+    Points closer than rounding can tell (a hundred-millionth of the extent) may be left in one group, though k asked
+    for two.
 
-    Examples
-    --------
     >>> kmeans([(0, 0), (0, 1), (9, 9)], 2, rng=0).tolist()
     [0, 0, 1]
     """
@@ -131,14 +120,10 @@ def count_by_silhouette(
 ) -> int:
     """Return the number of groups, 1 to ``most``, whose K-Means groups are the most clearly apart.
 
-    Notes
-    -----
-    The silhouette compares each point's distance to its own group with that to the next one: near 1 is
-    clearly apart, 0 is on the border. It is not defined for one group; one is taken when two or more stay
-    below 0.5, which Rousseeuw reads as no clear structure.
+    The silhouette compares each point's distance to its own group with that to the next one: near 1 is clearly apart, 0
+    is on the border. It is not defined for one group; one is taken when two or more stay below 0.5, which Rousseeuw
+    reads as no clear structure.
 
-    Examples
-    --------
     >>> count_by_silhouette([(0, 0), (0, 1), (1, 0), (9, 9), (9, 8), (8, 9)], rng=0)
     2
     >>> count_by_silhouette([(0, 0)], rng=0)
@@ -161,22 +146,11 @@ def count_by_silhouette(
 def link(points: ArrayLike, reach: float = LINK, neighbours: int = LINK_NEIGHBOURS) -> Labels:
     """Return labels that join neighbours, and neighbours of neighbours, shape (N,); -1 for strays.
 
-    Parameters
-    ----------
-    points : array_like, shape (N, 2)
-        Metres.
-    reach : float
-        Two points this close or closer are neighbours, in metres.
-    neighbours : int
-        A point hands on its group when so many points, itself included, lie within reach.
+    Two points, shape (N, 2), metres, are neighbours when at most ``reach`` metres apart; one hands on its group when so
+    many ``neighbours``, itself included, lie within reach. That finds groups of any form and needs no number, but
+    splits an outline at an unseen stretch wider than ``reach``, and joins two shapes that come closer than that. Groups
+    of fewer than eight points are strays.
 
-    Notes
-    -----
-    Finds groups of any form and needs no number, but splits an outline at an unseen stretch wider than
-    ``reach``, and joins two shapes that come closer than that. Groups of fewer than eight points are strays.
-
-    Examples
-    --------
     >>> row = [(x / 100, 0.0) for x in range(10)]
     >>> link(row + [(0.5, 0.5)]).tolist()
     [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1]
@@ -208,45 +182,36 @@ def _left_to_right(points: Floats, labels: NDArray[np.integer]) -> Labels:
 
 
 def _linked(places: Floats, n_at: Labels, reach: float, neighbours: int) -> Labels:
-    """Return the group of each place, shape (N,); -1 for strays.
+    """Return the group of each place, shape (N,); -1 for strays: DBSCAN, cell by cell (Gunawan, 2013).
 
-    A point hands on its group when so many points lie within reach; points that do so, and lie within reach of each
-    other, are one group: DBSCAN, cell by cell (Gunawan, 2013). Cells are three to the reach, so whoever is in the same
-    cell, or in the next, lies within reach; distances are looked at where that is not enough, at the edges of groups.
-
-    Parameters
-    ----------
-    places : array, shape (N, 2)
-        Metres, in order: a place on the edge of two groups goes to the one that begins first.
-    n_at : array of int, shape (N,)
-        How many points lie there.
-    reach : float
-        Two places this close or closer are neighbours, metres.
-    neighbours : int
-        A place hands on its group when so many points, its own included, lie within reach.
+    ``places``, shape (N, 2), metres, are in order: one on the edge of two groups goes to the one that begins first.
+    ``n_at``, shape (N,), points lie at each. Cells are three to the reach, so whoever is in the same cell, or in the
+    next, lies within reach; distances are looked at where that is not enough, at the edges of groups.
     """
     from scipy.spatial import cKDTree
 
     cells, cell = _cells(places, reach / CELLS_IN_REACH)
     tree, cell_tree = cKDTree(places), cKDTree(cells)
-    following = cell_tree.query_pairs(NEXT, output_type="ndarray").T
-    surely_near = _with_neighbours(np.bincount(cell, n_at), following)
+    following = cell_tree.query_pairs(NEXT, output_type="ndarray").T.astype(np.intp, copy=False)
+    n_in, (a, b) = np.bincount(cell, n_at), following
+    surely_near = n_in + np.bincount(a, n_in[b], len(cells)) + np.bincount(b, n_in[a], len(cells))
     handing_on = surely_near[cell] >= neighbours
     rest = np.flatnonzero(~handing_on)
     around = tree.query_ball_point(places[rest], reach)
     handing_on[rest] = [n_at[near].sum() >= neighbours for near in around]
 
     alive = np.bincount(cell, handing_on) > 0  # cells with a place that hands on
-    group = _components(len(cells), following[:, alive[following].all(axis=0)])
+    group = components(len(cells), following[:, alive[following].all(axis=0)])
     apart = cell_tree.query_pairs(WITHIN, output_type="ndarray").T
     apart = apart[:, alive[apart].all(axis=0) & (group[apart[0]] != group[apart[1]])]
     if apart.size:  # two groups may come within reach: only distances tell
         edge = np.flatnonzero(handing_on & np.isin(cell, apart))
         pairs = edge[cKDTree(places[edge]).query_pairs(reach, output_type="ndarray").T]
-        group = _components(len(cells), group[cell[pairs]])[group]
+        group = components(len(cells), group[cell[pairs]])[group]
 
     labels = np.full(len(places), -1, dtype=np.intp)
-    labels[handing_on] = _in_order(group[cell[handing_on]])
+    _, begins, which = np.unique(group[cell[handing_on]], return_index=True, return_inverse=True)
+    labels[handing_on] = np.argsort(np.argsort(begins))[which]  # numbered in the order in which groups begin
     for i, near in zip(rest, around, strict=True):  # the others take part in the first group within reach
         if not handing_on[i]:
             labels[i] = min((labels[j] for j in near if handing_on[j]), default=-1)
@@ -261,17 +226,11 @@ def _cells(places: Floats, side: float) -> tuple[Floats, Labels]:
     return ij[first], cell.astype(np.intp, copy=False)
 
 
-def _with_neighbours(count: NDArray[Any], pairs: NDArray[np.intp]) -> NDArray[Any]:
-    """Return for each cell its own count and those of the cells that it makes pairs with, shape (M,)."""
-    a, b = pairs.astype(np.intp, copy=False)
-    return count + np.bincount(a, count[b], len(count)) + np.bincount(b, count[a], len(count))
+def components(n: int, pairs: NDArray[np.intp]) -> Labels:
+    """Return the connected components of n things by pairs, shape (2, P): for each the number of one in its own.
 
-
-def _components(n: int, pairs: NDArray[np.intp]) -> Labels:
-    """Return which of n things hang together by pairs, shape (2, P): a number for each, shape (n,).
-
-    Each has the number of one that it hangs together with, its own at first. The smaller number of a pair goes to the
-    one whose number the other has, and so to all that have it. Numbers only fall, until no pair is left in two minds.
+    The smaller number of a pair goes to the one whose number the other has, and so to all that have it. Numbers only
+    fall, until both of each pair have the same.
     """
     number = np.arange(n)
     a, b = pairs
@@ -280,9 +239,3 @@ def _components(n: int, pairs: NDArray[np.intp]) -> Labels:
         np.minimum.at(number, np.concatenate([number[a], number[b]]), np.concatenate([smaller, smaller]))
         number = number[number][number]  # twice: long rows get through in few rounds
     return number
-
-
-def _in_order(groups: Labels) -> Labels:
-    """Return groups numbered 0, 1, 2, ... in the order in which they begin."""
-    _, begins, which = np.unique(groups, return_index=True, return_inverse=True)
-    return np.argsort(np.argsort(begins))[which]

@@ -1,7 +1,6 @@
 """Shapes: the circles and polygons that a board is made of, and that primkit finds.
 
-First step of the story. The truth and the finding are the same two types, so that like is compared with
-like: a map holds ``Circle`` and ``Polygon``, and so does every result.
+First step of the story. The truth and the finding are the same two types: like is compared with like.
 
 In:  centres, corners and radii in metres, in the world frame (x to the right, y up).
 Out: frozen shapes that know their kind, centroid, dimensions, outline and signed distance.
@@ -20,9 +19,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from .arguments import as_count, as_point, as_points, as_positive
+from .arguments import Floats, as_count, as_point, as_points, as_positive
 
 if TYPE_CHECKING:
     import shapely
@@ -40,13 +39,13 @@ NEARLY_RIGHT = np.radians(2)
 SHOWN_CORNERS = 6  # a polygon with more is printed with its first three
 
 
-def _pair(point: NDArray[np.float64]) -> str:
+def _pair(point: Floats) -> str:
     """Write a point for reading: six digits, and rounding's 1e-17 as the 0 that it means."""
     x, y = (round(v, 9) + 0.0 for v in point.tolist())
     return f"({x:.6g}, {y:.6g})"
 
 
-def _frozen(array: NDArray[np.float64]) -> NDArray[np.float64]:
+def _frozen(array: Floats) -> Floats:
     array = array.copy()
     array.setflags(write=False)
     return array
@@ -54,35 +53,23 @@ def _frozen(array: NDArray[np.float64]) -> NDArray[np.float64]:
 
 @dataclass(frozen=True, eq=False)
 class Circle:
-    """A circle.
+    """A circle: ``center``, shape (2,), metres, world frame; ``radius`` in metres, greater than zero.
 
-    Parameters
-    ----------
-    center : array_like, shape (2,)
-        Centre in metres, world frame.
-    radius : float
-        Radius in metres, greater than zero.
+    Raises ValueError if the centre is not two finite numbers or the radius is not above zero.
 
-    Raises
-    ------
-    ValueError
-        If the centre is not two finite numbers or the radius is not above zero.
-
-    Examples
-    --------
     >>> c = Circle((0, 0), 0.1)
     >>> c.kind, c.dimensions, c.centroid.tolist()
     ('circle', (0.1,), [0.0, 0.0])
     """
 
-    center: NDArray[np.float64]
+    center: Floats
     radius: float
 
     def __init__(self, center: ArrayLike, radius: float) -> None:
         object.__setattr__(self, "center", _frozen(as_point(center, "center")))
         object.__setattr__(self, "radius", as_positive(radius, "radius"))
 
-    def __reduce__(self) -> tuple[type[Circle], tuple[NDArray[np.float64], float]]:
+    def __reduce__(self) -> tuple[type[Circle], tuple[Floats, float]]:
         """Copy and unpickle by making anew: an array that comes out of a pickle could be written to."""
         return Circle, (self.center, self.radius)
 
@@ -92,7 +79,7 @@ class Circle:
         return "circle"
 
     @property
-    def centroid(self) -> NDArray[np.float64]:
+    def centroid(self) -> Floats:
         """Centre of area, shape (2,), metres: the circle's centre."""
         return self.center
 
@@ -116,12 +103,12 @@ class Circle:
         """Greatest distance from the centroid to the outline, in metres."""
         return self.radius
 
-    def outline(self, n: int = 200) -> NDArray[np.float64]:
+    def outline(self, n: int = 200) -> Floats:
         """Return n points evenly spaced along the outline, counter-clockwise, shape (n, 2), metres."""
         theta = np.arange(as_count(n, "n")) * (2 * np.pi / n)
         return self.center + self.radius * np.column_stack([np.cos(theta), np.sin(theta)])
 
-    def signed_distance(self, points: ArrayLike) -> NDArray[np.float64]:
+    def signed_distance(self, points: ArrayLike) -> Floats:
         """Return each point's distance to the outline, shape (N,), metres; negative inside."""
         return np.hypot(*(as_points(points) - self.center).T) - self.radius
 
@@ -150,24 +137,12 @@ class Circle:
 
 @dataclass(frozen=True, eq=False)
 class Polygon:
-    """A simple polygon, convex or not, counter-clockwise.
+    """A simple polygon, convex or not: ``vertices``, shape (K, 2), metres, world frame, in order around the outline.
 
-    Corners given clockwise are turned round (the first one stays first); a corner that repeats its
-    neighbour, as a closed ring's last one does, is dropped.
+    Corners given clockwise are turned round (the first one stays first); a corner that repeats its neighbour, as a
+    closed ring's last one does, is dropped. Raises ValueError if fewer than three corners are left, if three neighbours
+    lie on one line, or if the outline crosses or touches itself.
 
-    Parameters
-    ----------
-    vertices : array_like, shape (K, 2)
-        Corners in metres, world frame, in order around the outline.
-
-    Raises
-    ------
-    ValueError
-        If fewer than three corners are left, if three neighbours lie on one line, or if the outline crosses or
-        touches itself.
-
-    Examples
-    --------
     A clockwise ring that closes on itself is put right; an arrow head is a polygon too:
 
     >>> p = Polygon([(0, 0), (0, 1), (1, 0), (0, 0)])
@@ -179,7 +154,7 @@ class Polygon:
     'polygon'
     """
 
-    vertices: NDArray[np.float64]
+    vertices: Floats
 
     def __init__(self, vertices: ArrayLike) -> None:
         corners = _without_repeats(as_points(vertices, "vertices"))
@@ -187,7 +162,7 @@ class Polygon:
             raise ValueError(f"a polygon must have at least 3 different corners, got {len(corners)}")
         object.__setattr__(self, "vertices", _frozen(_counter_clockwise(corners)))
 
-    def __reduce__(self) -> tuple[type[Polygon], tuple[NDArray[np.float64]]]:
+    def __reduce__(self) -> tuple[type[Polygon], tuple[Floats]]:
         """Copy and unpickle by making anew, as a circle does."""
         return Polygon, (self.vertices,)
 
@@ -203,22 +178,22 @@ class Polygon:
         return KINDS[n - 2] if named else "polygon"
 
     @cached_property
-    def turns(self) -> NDArray[np.float64]:
+    def turns(self) -> Floats:
         """How far the outline bends at each corner, shape (K,), radians; negative where it bends inwards."""
         return turns_of(self.vertices)
 
     @property
-    def edges(self) -> NDArray[np.float64]:
+    def edges(self) -> Floats:
         """Vectors along the sides, from each corner to the next, shape (K, 2), metres."""
         return _next(self.vertices) - self.vertices
 
     @property
-    def sides(self) -> NDArray[np.float64]:
+    def sides(self) -> Floats:
         """Lengths of the sides, starting at the first corner, shape (K,), metres."""
         return np.hypot(*self.edges.T)
 
     @property
-    def normals(self) -> NDArray[np.float64]:
+    def normals(self) -> Floats:
         """Unit normals of the sides, pointing outwards, shape (K, 2)."""
         along = self.edges / self.sides[:, None]
         return np.column_stack([along[:, 1], -along[:, 0]])
@@ -235,7 +210,7 @@ class Polygon:
         return float(self.sides.sum())
 
     @property
-    def centroid(self) -> NDArray[np.float64]:
+    def centroid(self) -> Floats:
         """Centre of area, shape (2,), metres: the mean over the surface, not over the corners."""
         x, y = (self.vertices - self.vertices[0]).T
         weight = x * _next(y) - _next(x) * y
@@ -246,8 +221,7 @@ class Polygon:
     def dimensions(self) -> tuple[float, ...]:
         """Rectangle: ``(width, height)``, width >= height; all others: their sides in order, in metres.
 
-        Each of a rectangle's two is the mean of two opposite sides, so that a measured outline whose
-        corners are not exactly square still has one width and one height.
+        Each of a rectangle's two is the mean of two opposite sides: those of a measured one are never exactly alike.
         """
         sides = self.sides
         if self.kind == "rectangle":
@@ -259,14 +233,14 @@ class Polygon:
         """Greatest distance from the centroid to the outline, in metres."""
         return float(np.hypot(*(self.vertices - self.centroid).T).max())
 
-    def outline(self, n: int = 200) -> NDArray[np.float64]:
+    def outline(self, n: int = 200) -> Floats:
         """Return n points evenly spaced along the outline, counter-clockwise, shape (n, 2), metres."""
         ring = np.vstack([self.vertices, self.vertices[:1]])
         travelled = np.concatenate([[0.0], np.cumsum(self.sides)])
         stops = np.arange(as_count(n, "n")) * (travelled[-1] / n)
         return np.column_stack([np.interp(stops, travelled, ring[:, axis]) for axis in (0, 1)])
 
-    def signed_distance(self, points: ArrayLike) -> NDArray[np.float64]:
+    def signed_distance(self, points: ArrayLike) -> Floats:
         """Return each point's distance to the outline, shape (N,), metres; negative inside."""
         x, y = as_points(points).T[:, None] - self.vertices.T[..., None]  # from each corner, (K, N) each
         dx, dy = self.edges.T[..., None]
@@ -309,12 +283,12 @@ class Polygon:
 Shape = Circle | Polygon
 
 
-def _next(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+def _next(corners: Floats) -> Floats:
     """Return for each corner what belongs to the next one; several times faster than np.roll."""
     return np.concatenate([corners[1:], corners[:1]])
 
 
-def _without_repeats(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+def _without_repeats(corners: Floats) -> Floats:
     """Drop each corner that repeats the one before it, and the last one if it repeats the first (a closed ring)."""
     if len(corners) == 0:
         return corners
@@ -324,7 +298,7 @@ def _without_repeats(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     return corners[:-1] if closed else corners
 
 
-def turns_of(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+def turns_of(corners: Floats) -> Floats:
     """Return how far a ring of corners bends at each, to the left, shape (K,), radians in (-pi, pi].
 
     >>> np.degrees(turns_of(np.array([(0, 0), (2, 1), (0, 2), (1, 1)]))).round().tolist()
@@ -336,7 +310,7 @@ def turns_of(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.arctan2(cross, (before * edges).sum(axis=1))
 
 
-def _counter_clockwise(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+def _counter_clockwise(corners: Floats) -> Floats:
     """Return the corners of a simple polygon counter-clockwise, or refuse what is none."""
     turns = turns_of(corners)
     straight = np.abs(np.abs(turns) - np.pi / 2) > np.pi / 2 - STRAIGHT

@@ -23,7 +23,7 @@ from .palette import GREY, INK
 from .shapes import KINDS, Shape
 from .table import count
 
-SIDE, RIM = 280, 6  # px
+SIDE, SIDE_RIM = 280, 6  # px
 MOST_SIDES = 6  # of a polygon, told one by one
 
 
@@ -68,7 +68,7 @@ def thumbnail(
     areas, marks, stops, line = [_points(outline) for outline, _ in outlines], *map(_points, (dots, places, way))
     every = np.vstack([*areas, marks, stops, line])
     low, high = (every.min(axis=0), every.max(axis=0)) if len(every) else (np.zeros(2), np.ones(2))
-    scale = (SIDE - 2 * RIM) / (float((high - low).max()) or 1.0)
+    scale = (SIDE - 2 * SIDE_RIM) / (float((high - low).max()) or 1.0)
 
     def pixels(points: Floats) -> list[tuple[int, int]]:
         x, y = (scale * (points - (low + high) / 2)).T

@@ -1,7 +1,5 @@
 """Steps: your own function in the place of one of the pipeline's.
 
-What comes in and what goes out stays the same, so any step can be a student's own, or the truth.
-
 In:  functions: ``segment(points, n_shapes)``, ``fit_line(points)``, ``fit_circle(points)``.
 Out: ``Steps``, for ``find_shapes(points, steps=...)``.
 
@@ -34,6 +32,9 @@ from .shapes import Circle, Polygon
 class Steps:
     """Functions of your own for ``find_shapes``; a step that is not given is the library's.
 
+    A shape that your fit returns None for is left out. Its standard deviations belong to the library's fit: a detection
+    that yours measured has none. Raises ValueError if a step is not a function.
+
     Parameters
     ----------
     segment : callable, optional
@@ -47,16 +48,6 @@ class Steps:
     fit_circle : callable, optional
         ``fit_circle(points)``: points of one circle, shape (N, 2), metres. Returns a ``Circle`` or three numbers
         (x, y, radius), or None when they fix none. It measures what was named a circle.
-
-    Raises
-    ------
-    ValueError
-        If a step is not a function.
-
-    Notes
-    -----
-    A shape that your fit returns None for is left out. Its standard deviations belong to the library's fit, so
-    a detection that yours measured has none.
 
     Examples
     --------
@@ -124,8 +115,7 @@ class Steps:
     def remeasured(self, found: Detection, reach: float, *, sides: bool = True) -> Detection | None:
         """Return the detection measured with the own fits; None when they find nothing.
 
-        Points within ``reach`` metres of the new outline are kept. ``sides`` says whether a polygon's sides are
-        lines that were fitted, as they are in the default way.
+        Points within ``reach`` metres of the new outline are kept. ``sides``: whether a polygon's are fitted lines.
         """
         shape: Circle | Polygon | None
         if isinstance(found.shape, Circle) and self.fit_circle is not None:

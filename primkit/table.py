@@ -37,14 +37,11 @@ class Table:
 
     Parameters
     ----------
-    header : sequence of str
-        The names of the columns, two or more.
+    header : sequence of str, the names of two or more columns
     rows : sequence of tuple of str
         One text for each column; a row of one text heads the rows below it.
     title : str
-        What the table shows.
-    notes : sequence of str
-        What a reader must know, one thought each.
+    notes : sequence of str, one thought each
     folds : sequence of int
         At these columns text goes on below, with the first column once more: for tables too wide for a terminal.
     lines : sequence

@@ -36,12 +36,8 @@ QUADRANT_CENTER = 0.225  # of the board's size
 QUADRANT_JITTER = 0.1  # of the board's size, each way
 PENTAGON = np.array([(0, -1), (0.9, -0.3), (0.5, 0.8), (-0.5, 0.8), (-0.91, -0.3)])
 
-# Shapes stay this far from the board's edge [m], so that way-points lie on every side of them.
-EDGE_MARGIN = 0.12
-# Free shapes keep every corner visible: interior angles from 30 to 150 degrees, sides of at least 4 cm.
-LEAST_CORNER = np.radians(30)
-LEAST_SIDE = 0.04
-
+EDGE_MARGIN = 0.12  # m from a shape to the board's edge, so that way-points lie on every side of it
+LEAST_CORNER, LEAST_FREE_SIDE = np.radians(30), 0.04  # rad (and to 180 degrees) and m: corners and sides can be told
 TRIES_PER_SHAPE = 300  # a shape that found no room in this many tries will hardly find any
 TRIES_PER_WORLD = 20
 MOST_COMPARED = 1000  # pairs of shapes whose boxes meet, of which one may lie on the other
@@ -59,6 +55,9 @@ CORNERS = {"triangle": 3, "quadrilateral": 4, "pentagon": 5, "hexagon": 6}  # of
 class World:
     """A square board with shapes on it.
 
+    Raises ValueError if something other than a Circle or a Polygon is among the shapes, the size is not above zero, or
+    walls is neither True nor False. Warns (``LikelyWrong``) if a shape lies off the board, or on another one.
+
     Parameters
     ----------
     shapes : iterable of Circle and Polygon
@@ -67,17 +66,6 @@ class World:
         Side of the board in metres; it spans ``[-size/2, size/2]`` both ways.
     walls : bool
         Whether the board's edge is a wall, which the LiDAR sees from inside. Outside, all is solid.
-
-    Raises
-    ------
-    ValueError
-        If something other than a Circle or a Polygon is among the shapes, the size is not above zero, or walls is
-        neither True nor False.
-
-    Warns
-    -----
-    LikelyWrong
-        If a shape lies off the board, or on another one.
 
     Examples
     --------
@@ -130,10 +118,7 @@ class World:
         return self._hash  # kept: the ray caster looks worlds up, and a world may have ten thousand shapes
 
     def least_gap(self) -> float:
-        """Return the least distance between two outlines in metres; zero or less when two meet.
-
-        With fewer than two shapes it is infinite.
-        """
+        """Return the least distance between two outlines in metres; <= 0 when two meet, infinite without two."""
         return min((gap_between(a, b) for a, b in combinations(self.shapes, 2)), default=float("inf"))
 
 
@@ -196,10 +181,11 @@ def random_world(
 ) -> World:
     """Return a board with n random shapes that do not touch.
 
+    Raises ValueError if an argument is out of its range, or no room is found for n shapes with that gap.
+
     Parameters
     ----------
-    n : int
-        Number of shapes; at most four in the paper's style.
+    n : int, at most four in the paper's style
     style : {"paper", "free", "any"}
         ``"paper"``: at most one shape in each quadrant, sides parallel to the axes, the paper's sizes.
         ``"free"``: anywhere, turned by any angle; triangles, rectangles and pentagons are irregular, with
@@ -211,18 +197,10 @@ def random_world(
         also one of the sorts above, or ``"polygon"`` for one of them at random.
     gap : float
         Least distance between two outlines in metres.
-    size : float
-        Side of the board in metres. Outlines stay 0.12 m from its edge (inside +-0.38 m by default), so
-        that way-points lie on every side of them.
-    walls : bool
-        Whether there are walls around the board.
-    rng : int or numpy.random.Generator, optional
-        Seed or generator. The same seed gives the same world.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of its range, or no room is found for n shapes with that gap.
+    size, walls
+        As for ``World``. Outlines stay 0.12 m from the edge, so that way-points lie on every side of them.
+    rng : seed or numpy.random.Generator, optional
+        The same seed gives the same world.
 
     Examples
     --------
@@ -255,7 +233,6 @@ def random_world(
 def _checked_kinds(
     kinds: Sequence[Kind | Sort] | None, n: int, style: Style, rng: np.random.Generator
 ) -> list[Kind | Sort]:
-    """Return n kinds, drawn evenly when none are given."""
     drawn = (*PRIMITIVES, *SORTS) if style == "any" else PRIMITIVES
     if isinstance(kinds, str):
         raise ValueError(f"kinds must be a list of kinds, such as [{kinds!r}], got the text {kinds!r}")
@@ -306,8 +283,7 @@ def _fits(shape: Shape, placed: Sequence[Shape], gap: float, limit: float) -> bo
 def paper_shape(kind: Kind | Sort, center: np.ndarray, rng: np.random.Generator) -> Shape:
     """Return a random shape with the sizes of the paper's maps, sides parallel to the axes.
 
-    ``center``, shape (2,), metres, is where the published code puts the shape: for a triangle the middle
-    of its base, for the others the middle of the shape.
+    ``center``, shape (2,), metres: for a triangle the middle of its base, for the others that of the shape.
     """
     if kind == "circle":
         return Circle(center, rng.uniform(0.05, 0.10))
@@ -367,4 +343,4 @@ def _well_formed(corners: np.ndarray) -> bool:
     """Tell whether counter-clockwise corners are convex, with sides and angles that can be told apart."""
     turns, sides = turns_of(corners), np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
     clear = (turns >= LEAST_CORNER) & (turns <= np.pi - LEAST_CORNER)
-    return bool(clear.all()) and bool((sides >= LEAST_SIDE).all())
+    return bool(clear.all()) and bool((sides >= LEAST_FREE_SIDE).all())

@@ -232,7 +232,7 @@ def test_blocks_leave_no_trace(monkeypatch, model, round_, score, block):
     """Regression: as a matrix product, residuals differed in the last bit with the number of lines in a block."""
     points = np.round(cluttered(3, round_=round_), 3)  # on a grid: many points lie just at the threshold
     whole = run_ransac(points, model, 0.02, trials=300, score=score, refit=False, rng=0)
-    monkeypatch.setattr(ransac, "BLOCK", block)
+    monkeypatch.setattr(ransac, "RESIDUALS_AT_ONCE", block)
     blocks = run_ransac(points, model, 0.02, trials=300, score=score, refit=False, rng=0)
     assert blocks.params.tobytes() == whole.params.tobytes()
     assert blocks.inliers.tobytes() == whole.inliers.tobytes()

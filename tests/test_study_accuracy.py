@@ -44,7 +44,7 @@ from primkit.study import (
 from primkit.study.accuracy.accuracy_table import accuracy_table, level_lines
 from primkit.study.accuracy.drive_views import View, share_seen, unseen_sides, view_of
 from primkit.study.accuracy.partial import partial_line, partial_table
-from primkit.study.accuracy.sweeps import PLAIN, Condition, Level, experiments, n_runs
+from primkit.study.accuracy.sweeps import UNCHANGED, Condition, Level, experiments, n_runs
 from primkit.study.estimate import Estimate, mean_of, pooled_share, ratio_of, share_of
 from primkit.study.oracle import NOBODY
 from primkit.world import World, random_world
@@ -210,7 +210,7 @@ def rows_by_hand():
 
 
 def test_a_level_computed_by_hand():
-    ours, oracle = level_lines(Level("easy", 3, PLAIN), rows_by_hand())
+    ours, oracle = level_lines(Level("easy", 3, UNCHANGED), rows_by_hand())
     assert (ours.level, ours.x, ours.method, ours.n_maps, ours.n_runs, ours.n_shapes) == ("easy", 3, "ROBUST", 2, 2, 1)
     assert ours.fine.value == (0.4 + 0.3 * 0.5 + 0.3) / 2
     assert ours.coarse.value == 0.5
@@ -225,21 +225,21 @@ def test_a_level_computed_by_hand():
 def test_runs_on_one_map_are_one_draw():
     """Three runs on map a and one on map b: each map counts once."""
     first, second, *others = rows_by_hand()
-    line = level_lines(Level("easy", 3, PLAIN), [first, second] * 3 + others)[0]
+    line = level_lines(Level("easy", 3, UNCHANGED), [first, second] * 3 + others)[0]
     assert (line.n_maps, line.n_runs, line.coarse.value) == (2, 4, 0.5)
     assert line.count == share_of(0.5, 2)
 
 
 def test_without_common_shapes_there_is_no_error():
     rows = [replace(row, found_as=(None,), center_errors=(), dimension_errors=()) for row in rows_by_hand()]
-    line = level_lines(Level("easy", 3, PLAIN), rows)[0]
+    line = level_lines(Level("easy", 3, UNCHANGED), rows)[0]
     assert (line.n_shapes, line.center_ratio) == (0, None)
     assert np.isnan(line.center_rms)
     assert line.cells()[4:] == ("nan", "-", "nan", "-", "0.200")
 
 
 def table_by_hand():
-    return accuracy_table("noise", "By hand", level_lines(Level("easy", 3, PLAIN), rows_by_hand()), ("a",))
+    return accuracy_table("noise", "By hand", level_lines(Level("easy", 3, UNCHANGED), rows_by_hand()), ("a",))
 
 
 def test_a_table_by_hand():
@@ -289,9 +289,9 @@ def drawn(condition, n_maps=8, seed=0):
 
 def test_maps_are_drawn_from_the_stated_seed():
     rng = np.random.default_rng([UNTUNED, 5, 2]).spawn(2)[0]
-    assert drawn(PLAIN, 3, seed=5)[2].world == random_world(3, style="free", gap=0.05, rng=rng)
-    assert [len(e.world.shapes) for e in drawn(PLAIN)] == [1, 2, 3, 4, 5, 6, 1, 2]
-    assert drawn(PLAIN, seed=1)[0].world != drawn(PLAIN)[0].world
+    assert drawn(UNCHANGED, 3, seed=5)[2].world == random_world(3, style="free", gap=0.05, rng=rng)
+    assert [len(e.world.shapes) for e in drawn(UNCHANGED)] == [1, 2, 3, 4, 5, 6, 1, 2]
+    assert drawn(UNCHANGED, seed=1)[0].world != drawn(UNCHANGED)[0].world
 
 
 def test_only_what_is_changed_changes():
@@ -313,7 +313,7 @@ def test_fewer_scans_are_some_of_the_more():
 
 def test_the_suite_is_scanned_again_only_with_noise():
     noisy = Condition("suite", noise_std=0.001)
-    assert [n_runs(c, 100) for c in (Condition("suite"), noisy, PLAIN)] == [34, 102, 100]
+    assert [n_runs(c, 100) for c in (Condition("suite"), noisy, UNCHANGED)] == [34, 102, 100]
     assert n_runs(noisy, 1) == 34
     runs = drawn(noisy, 68)
     assert len(runs) == 68
@@ -477,7 +477,7 @@ def test_partial_views_are_the_same_every_time():
 def test_the_picture_has_a_panel_for_each_sweep_and_tolerance(tmp_path):
     before = plt.get_fignums()
     one, table = rows_by_hand(), table_by_hand()
-    lines = [line for x in (3, 5) for line in level_lines(Level(f"{x}", x, PLAIN), one)]
+    lines = [line for x in (3, 5) for line in level_lines(Level(f"{x}", x, UNCHANGED), one)]
     strange = replace(lines[0], method="mine")
     tables = [replace(table, name="spurious", title="Strays, b"), replace(table, lines=(*lines, strange))]
     figure = plot_accuracy(tables)

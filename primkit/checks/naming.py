@@ -26,7 +26,7 @@ from .judges import array, is_pair, no_return, number, shown
 Pair = tuple[float, float]
 
 LEAST_SINE = 1e-9  # between lines that are not parallel: far above rounding, far below any corner
-LEAST_BEND = np.radians(5)  # of lines that do meet: their corner is then known to many digits
+LEAST_ANGLE = np.radians(5)  # of lines that do meet: their corner is then known to many digits
 CORNER_TOLERANCE = 1e-7  # m: a corner of lines that bend by five degrees loses two digits
 MARGIN_TOLERANCE = 1e-6
 
@@ -85,7 +85,7 @@ def _line_cases(rng: np.random.Generator) -> Iterator[Args]:
         d, e = rng.uniform(-0.5, 0.5, 2).tolist()
         if n % 8 == 0:
             return (angle, d), (angle + np.pi * float(rng.integers(2)), e)
-        return ((angle, d), (other, e)) if abs(np.sin(other - angle)) > np.sin(LEAST_BEND) else None
+        return ((angle, d), (other, e)) if abs(np.sin(other - angle)) > np.sin(LEAST_ANGLE) else None
 
     yield from random_cases(draw)
 

@@ -189,17 +189,14 @@ class Course:
 def new_course(root: str | Path, assignments: str | Path = ASSIGNMENTS) -> Course:
     """Make a course folder.
 
+    Raises ValueError if there is something in the folder, or no assignments are found.
+
     Parameters
     ----------
     root : str or path
         A folder that does not exist yet, or is empty.
     assignments : str or path
         Where ``source/`` and ``grader/`` lie; in a clone of the project they are found by themselves.
-
-    Raises
-    ------
-    ValueError
-        If there is something in the folder, or no assignments are found.
     """
     course, assignments = Course(root), Path(assignments)
     if not all((assignments / name).is_dir() for name in COPIED_FOLDERS):

@@ -36,6 +36,8 @@ def grade(
 ) -> list[Fault]:
     """Grade all submissions of a problem set, and return what went wrong, one fault for each thing.
 
+    Raises ValueError if nothing was handed in or released, or the course names what has moved.
+
     Parameters
     ----------
     course, name : Course, str
@@ -46,11 +48,6 @@ def grade(
         These students alone; everybody when empty.
     say : callable
         Is called with a line for each student, and with those of the summary.
-
-    Raises
-    ------
-    ValueError
-        If nothing was handed in or released, or the course names what has moved.
     """
     students = _students_to_grade(course, name, only)
     say(f"nbgrader runs {len(students)} submission{'s' * (len(students) != 1)}, each for some seconds")

@@ -72,10 +72,7 @@ class Overview:
 def overview(course: Course, name: str) -> Overview:
     """Read what a class did in a problem set.
 
-    Raises
-    ------
-    ValueError
-        If nothing has been graded yet.
+    Raises ValueError if nothing has been graded yet.
     """
     from nbgrader.api import Gradebook, MissingEntry
 

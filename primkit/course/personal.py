@@ -50,6 +50,8 @@ CORNER_SHIFT = {3: np.radians(20), 5: np.radians(12)}
 def personal_world(student_id: str, *, salt: str) -> World:
     """Return the board of one student.
 
+    Raises ValueError if the id is no text or empty, or the salt is too short.
+
     Parameters
     ----------
     student_id : str
@@ -61,11 +63,6 @@ def personal_world(student_id: str, *, salt: str) -> World:
     -------
     World
         Four shapes, one of each kind, on a board of 1 m x 1 m; no two students' are alike, and all equally hard.
-
-    Raises
-    ------
-    ValueError
-        If the id is no text or empty, or the salt is too short.
 
     Examples
     --------

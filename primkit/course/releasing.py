@@ -20,10 +20,8 @@ from .running import Done, nbgrader
 def release(course: Course, name: str, *, say: Callable[[str], None]) -> None:
     """Make the students' version of a problem set, and their personal maps if it has any.
 
-    Raises
-    ------
-    ValueError
-        If the course names what has moved, nbgrader refuses the problem set, or a solution is found in what it made.
+    Raises ValueError if the course names what has moved, nbgrader refuses the problem set, or a solution is found in
+    what it made.
     """
     refuse_old_names(course, name, released=False)
     students = course.students()

@@ -1,10 +1,9 @@
 """Keyed: drives with four keys, as the paper's authors drove: straight on, back, or a turn on the spot, and no arcs.
 
 W and S turn both wheels at full speed, A and D one against the other; a key is held for a tenth of a second, then there
-is a scan. Their paths were not recorded. A driver beside the board plans these as in ``scripted``: around the nearest
-shape that is left, at a distance that sways, with a part left out now and then. Ten times a second it looks at the
-place a little ahead on its way, and presses A or D where that lies farther off its heading than half of what the key
-turns, and W elsewhere. It makes no mistakes, and never looks at what was mapped. None of it was changed after a score.
+is a scan. Their paths were not recorded: a driver beside the board plans these as in ``scripted``. Ten times a second
+it looks at the place a little ahead on its way, and presses A or D where that lies farther off its heading than half of
+what the key turns, and W elsewhere. It never looks at what was mapped. None of it was changed after a score.
 
 The shapes have no body: the start lies in some of them, and the robot drives out through their sides.
 
@@ -29,21 +28,19 @@ from ..world import World
 from .scripted import LOOK_AHEAD, MOST_PERIODS, WAY_STEP, progress, tour
 
 KEYED_START = np.array([-0.0865, -0.2117, PUBLISHED_HEADING])  # the same in all of the paper's worlds
-TURN_SPEED = 4.17  # rad/s
+KEY_TURN_SPEED = 4.17  # rad/s
 KEYS = {
     "W": (FASTEST, FASTEST),
     "S": (-FASTEST, -FASTEST),
-    "A": (-TURN_SPEED, TURN_SPEED),
-    "D": (TURN_SPEED, -TURN_SPEED),
+    "A": (-KEY_TURN_SPEED, KEY_TURN_SPEED),
+    "D": (KEY_TURN_SPEED, -KEY_TURN_SPEED),
 }
-TURN_OF_A_KEY = WHEEL * 2 * TURN_SPEED / AXLE * PERIOD  # rad
+TURN_OF_A_KEY = WHEEL * 2 * KEY_TURN_SPEED / AXLE * PERIOD  # rad
 
 
 def published_drives() -> dict[str, Floats]:
     """Return the poses of the bundled drives, one on each map of ``published_suite``.
 
-    Examples
-    --------
     >>> len(published_drives()["1_circle"])
     115
     """
@@ -53,8 +50,6 @@ def published_drives() -> dict[str, Floats]:
 def press_keys(world: World, *, rng: int | np.random.Generator | None = None) -> str:
     """Return the keys that bring the robot around all shapes, from the paper's start on.
 
-    Examples
-    --------
     >>> press_keys(World(), rng=0)
     ''
     """

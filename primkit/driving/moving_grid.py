@@ -1,7 +1,6 @@
 """Moving grid: a grid that gives up what is no longer there.
 
-A plain ``Grid`` never forgets: a shape that is moved leaves a ghost. Here each cell remembers when it was hit last and
-from where, and is evicted after two contradictions.
+Each cell remembers when it was hit last and from where, and is evicted after two contradictions.
 
 In:  ``Scans``, in the order in which they were taken.
 Out: ``grid.points()``: the centres of the cells that still stand, shape (N, 2), metres, world frame.
@@ -41,9 +40,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arguments import Bools, Floats, Ints, check_type
+from ..arguments import Bools, Floats, Ints
 from ..grid import Grid, as_cells, as_keys
-from ..lidar import Lidar, Scans
+from ..lidar import Lidar, Scans, as_lidar
+from ..segmentation import components
 from ..show import thumbnail
 from ..table import count
 
@@ -61,22 +61,11 @@ GONE_FIELDS = [("key", np.int64), ("seen", np.int64), ("until", np.int64)]
 
 
 class MovingGrid:
-    """A set of occupied square cells, each of which holds until it is contradicted.
+    """A set of occupied square cells with a side of ``resolution`` metres, each of which holds until contradicted.
 
-    Parameters
-    ----------
-    resolution : float
-        Side of a cell in metres.
-    lidar : Lidar, optional
-        The sensor, whose limits say what a beam without a hit means; the paper's by default.
+    The limits of the ``lidar``, the paper's by default, say what a beam without a hit means. Raises ValueError if the
+    resolution is not a finite number above zero, or the lidar is none.
 
-    Raises
-    ------
-    ValueError
-        If the resolution is not a finite number above zero, or the lidar is none.
-
-    Examples
-    --------
     >>> grid = MovingGrid()
     >>> len(grid), grid.n_scans
     (0, 0)
@@ -84,20 +73,16 @@ class MovingGrid:
 
     def __init__(self, resolution: float = 0.001, lidar: Lidar | None = None) -> None:
         self._frame = Grid(resolution)  # stays empty: where its cells lie, these lie
-        self.lidar = Lidar() if lidar is None else lidar
-        check_type(self.lidar, Lidar, "lidar must be a Lidar, such as Lidar()")
+        self.lidar = as_lidar(lidar)
         self.n_scans = 0  # how many scans were added
-        self._cells = _no_cells()
+        self._cells = np.zeros(0, dtype=CELL_FIELDS)
         self._gone = np.zeros(0, dtype=GONE_FIELDS)
 
     def add(self, seen: Scans | ArrayLike) -> None:
         """Give up the cells that scans contradict, and occupy those that their hits fall into; scan by scan.
 
-        Raises
-        ------
-        ValueError
-            If these are no Scans of the grid's lidar, or a hit is not finite or too far out; the grid then stays as
-            it was.
+        Raises ValueError if these are no Scans of the grid's lidar, or a hit is not finite or too far out; the grid
+        then stays as it was.
         """
         if not isinstance(seen, Scans):
             raise ValueError(f"a MovingGrid must be given Scans, whose beams clear cells, got {type(seen).__name__}")
@@ -140,31 +125,25 @@ class MovingGrid:
     def _follow(self, one: Scans) -> None:
         self.n_scans += 1
         if one.inside[0]:
-            return  # it sees nothing, and knows it
-        cells = self._cells
+            return  # in a shape nothing is seen
+        cells, hit = self._cells, self._hit_by(one)
         cells["against"] += self._contradicted(one)
-        self._cells = _merged(cells, self._hit_by(one))
+        merged = np.concatenate([cells[~np.isin(cells["key"], hit["key"])], hit])  # those hit as they are known now
+        self._cells = merged[np.argsort(merged["key"])]
         given_up = self._cells["against"] >= EVICTED_AFTER
         if given_up.any():
-            self._gone = np.concatenate([self._gone[self._gone["until"] >= self.n_scans], self._evicted(given_up)])
+            gone = np.zeros(int(given_up.sum()), dtype=GONE_FIELDS)
+            gone["key"], gone["seen"] = self._cells["key"][given_up], self._cells["seen"][given_up]
+            gone["until"] = self.n_scans + SCANS_KEPT
+            self._gone = np.concatenate([self._gone[self._gone["until"] >= self.n_scans], gone])
             self._cells = self._cells[~given_up]
             self._cells = self._cells[~self._falling()]
 
     def give_up(self, which: ArrayLike) -> None:
-        """Give up cells for a reason of one's own, such as a shape that stands around them now.
+        """Give up some of ``cells``, shape (N,), such as those that a shape stands around now.
 
-        Parameters
-        ----------
-        which : array_like of bool, shape (N,)
-            Which of ``cells``.
+        Raises ValueError if there is not one truth value for each cell; the grid then stays as it was.
 
-        Raises
-        ------
-        ValueError
-            If there is not one truth value for each cell; the grid then stays as it was.
-
-        Examples
-        --------
         >>> grid = MovingGrid()
         >>> grid.give_up([True])
         Traceback (most recent call last):
@@ -180,7 +159,7 @@ class MovingGrid:
     def _hit_by(self, one: Scans) -> NDArray[np.void]:
         """Return the cells that one scan hits, each once."""
         keys = np.unique(as_keys(self._frame.to_cells(one.points())))
-        hit = _no_cells(len(keys))
+        hit = np.zeros(len(keys), dtype=CELL_FIELDS)
         hit["key"], hit["seen"], hit["from_x"], hit["from_y"] = keys, self.n_scans, *one.poses[0, :2]
         return hit
 
@@ -215,17 +194,8 @@ class MovingGrid:
         between: Bools = ((across <= self.resolution) & (ahead > BEFORE_A_HIT) & (ahead < BEHIND)).any(axis=1)
         return between
 
-    def _evicted(self, given_up: Bools) -> NDArray[np.void]:
-        """Return what is remembered of cells that are given up: where they were, and when they were seen last."""
-        gone = np.zeros(int(given_up.sum()), dtype=GONE_FIELDS)
-        gone["key"], gone["seen"] = (self._cells[name][given_up] for name in ("key", "seen"))
-        gone["until"] = self.n_scans + SCANS_KEPT
-        return gone
-
     def _falling(self) -> Bools:
         """Tell which cells hang together with many that were given up, and were not seen since, shape (N,)."""
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
         from scipy.spatial import cKDTree
 
         left = self.points()
@@ -235,9 +205,8 @@ class MovingGrid:
         if len(gone) < LEAST_EVICTED:
             return np.zeros(len(left), dtype=bool)
         together = np.vstack([places[bare], left])
-        pairs = cKDTree(together).query_pairs(CONNECTED, output_type="ndarray")
-        links = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(together), len(together)))
-        n, part = connected_components(links, directed=False)
+        n = len(together)
+        part = components(n, cKDTree(together).query_pairs(CONNECTED, output_type="ndarray").T)
         part_gone, part_left = part[: len(gone)], part[len(gone) :]
         last = np.zeros(n, dtype=np.int64)
         np.maximum.at(last, part_gone, gone["seen"])
@@ -247,16 +216,6 @@ class MovingGrid:
         self._gone = gone[~falls[part_gone]]  # what fell takes nothing more along
         falling: Bools = falls[part_left] & old
         return falling
-
-
-def _no_cells(n: int = 0) -> NDArray[np.void]:
-    return np.zeros(n, dtype=CELL_FIELDS)
-
-
-def _merged(cells: NDArray[np.void], hit: NDArray[np.void]) -> NDArray[np.void]:
-    """Return all cells, sorted by their keys; those that were hit as they are known now."""
-    together = np.concatenate([cells[~np.isin(cells["key"], hit["key"])], hit])
-    return together[np.argsort(together["key"])]
 
 
 def _hidden_share(step: float) -> float:

@@ -70,16 +70,10 @@ def shown_from(square: tuple[int, int], worth: Floats, opaque: Bools, lidar: Lid
 def _shown(
     squares: NDArray[np.int64], worth: Floats, opaque: Bools, lidar: Lidar
 ) -> tuple[Floats, NDArray[np.int64], int]:
-    """Follow beams from squares, shape (M, 2), over the map with a rim around it.
+    """Follow beams from squares, shape (M, 2), over the map with a rim around it: beams may leave the board.
 
-    Returns
-    -------
-    shown : array, shape (M, B, R)
-        Worth of what each beam meets at each step, times the area between it and its neighbour there, in squares.
-    numbers : array of int, shape (M, B, R)
-        Which square that is, by its number on the map with its rim.
-    rim : int
-        Squares around the map: beams may leave the board, and nothing is shown there.
+    Returns the worth of what each beam meets at each step, times the area between it and its neighbour there, in
+    squares, shape (M, B, R); which square that is, by its number on the map with its rim; and the rim, in squares.
     """
     across = max(1.5 * len(worth) * SQUARE, lidar.range_min + SQUARE)  # beyond the board there is nothing to see
     steps = np.arange(lidar.range_min, min(lidar.range_max, across), SQUARE) + SQUARE / 2

@@ -54,27 +54,10 @@ MOST_PERIODS = 20_000  # half an hour: a drive that is not over by then never is
 
 
 def scripted_route(world: World, *, rng: int | np.random.Generator | None = None) -> Route:
-    """Return a drive around all shapes as a script steers it.
+    """Return a drive around all shapes as a script steers it, from the free place nearest to the board's centre.
 
-    Parameters
-    ----------
-    world : World
-        What stands on the board.
-    rng : int or numpy.random.Generator, optional
-        Seed or generator.
+    Speeds are in steps of 0.01 rad/s; the robot touches nothing. Raises ValueError if it has no room on the board.
 
-    Returns
-    -------
-    Route
-        From the free place nearest to the board's centre; speeds in steps of 0.01 rad/s. The robot touches nothing.
-
-    Raises
-    ------
-    ValueError
-        If the robot has no room on the board.
-
-    Examples
-    --------
     Where there is nothing to see, it stays where it is:
 
     >>> len(scripted_route(World(), rng=0))
@@ -89,15 +72,8 @@ def scripted_route(world: World, *, rng: int | np.random.Generator | None = None
 def drives_on(worlds: Mapping[str, World], *, seed: int = 0) -> dict[str, Floats]:
     """Return the poses of a scripted drive on each map, by name, for ``run_study(worlds, drives=...)``.
 
-    Parameters
-    ----------
-    worlds : dict of str to World
-        The maps. Those of the suite have their bundled drives.
-    seed : int
-        Of the drives on all other maps; that on one of them does not depend on the others.
+    Maps of the suite have their bundled drives. The seed is that of all other drives; none depends on the others.
 
-    Examples
-    --------
     >>> {name: poses.shape for name, poses in drives_on({"empty": World()}).items()}
     {'empty': (1, 3)}
     """
@@ -193,7 +169,9 @@ class _Board:
         places = places[clearance(world, places) >= WAY_CLEARANCE]
         pairs = cKDTree(places).query_pairs(1.5 * WAY_GRID, output_type="ndarray")
         lengths = np.hypot(*(places[pairs[:, 0]] - places[pairs[:, 1]]).T)
-        return cls(world, places, coo_array((lengths, pairs.T), shape=(len(places), len(places))).tocsr())
+        return cls(
+            world, places, coo_array((lengths, pairs.T.astype(np.int32)), shape=(len(places), len(places))).tocsr()
+        )
 
     def way(self, start: Floats, end: Floats) -> list[Floats]:
         """Return the places after the start that lead to the end; none where no way leads there."""

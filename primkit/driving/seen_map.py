@@ -29,8 +29,8 @@ from ..seen import is_seen
 from ..shapes import Shape
 
 SQUARE = 0.01  # m: side of a square of the map
-# m: so far before a hit, squares' centres count as free: those of all squares that hold a piece of the outline are
-# nearer to it (half a diagonal, 7 mm), and 3 mm are left for noise.
+# m: so far before a hit, squares' centres count as free: those that hold a piece of the outline are nearer (half a
+# diagonal, 7 mm), and 3 mm are left for noise.
 BEFORE_A_HIT = 0.01
 JOINED = 0.04  # m: hits of neighbouring beams this near to each other lie on one outline
 EXPLAINED = 0.01  # m: what lies in a shape that was found, or this near to it, is no place where another could hide

@@ -32,26 +32,10 @@ START_SPOTS = 1000  # tried
 def wander(
     world: World, n_poses: int = 60, *, clearance: float = CLEARANCE, rng: int | np.random.Generator | None = None
 ) -> Floats:
-    """Return the poses of a smooth random drive that keeps clear of all outlines, shape (n_poses, 3).
+    """Return the poses of a smooth random drive, ``clearance`` metres from all outlines or more, shape (n_poses, 3).
 
-    Parameters
-    ----------
-    world : World
-        What stands on the board.
-    n_poses : int
-        How many scans are made.
-    clearance : float
-        Least distance from every outline, metres.
-    rng : int or numpy.random.Generator, optional
-        Seed or generator.
+    Raises ValueError if the number or the clearance is out of its range, or no spot on the board is that clear.
 
-    Raises
-    ------
-    ValueError
-        If the number or the clearance is out of its range, or no spot on the board is that clear.
-
-    Examples
-    --------
     >>> from primkit.shapes import Circle
     >>> wander(World([Circle((0, 0), 0.4)]), clearance=0.4, rng=0)
     Traceback (most recent call last):
@@ -86,9 +70,8 @@ def _turn(world: World, place: Floats, heading: float, wish: float, clearance: f
     A way is looked at as if the turn were kept up; where none is clear to its end, the longest clear one is taken.
     """
     bearings = heading + TURN_CHOICES[:, None] * np.arange(1, CLEAR_STEPS + 1)
-    ways = place + PERIOD_WAY * np.cumsum(
-        np.stack([np.cos(bearings), np.sin(bearings)], axis=-1), axis=1
-    )  # (T, CLEAR_STEPS, 2)
+    directions = np.stack([np.cos(bearings), np.sin(bearings)], axis=-1)  # (T, CLEAR_STEPS, 2)
+    ways = place + PERIOD_WAY * np.cumsum(directions, axis=1)
     clear = _clear(world, ways.reshape(-1, 2), clearance).reshape(bearings.shape)
     length = np.where(clear.all(axis=1), CLEAR_STEPS, clear.argmin(axis=1))
     best = np.flatnonzero(length == length.max())

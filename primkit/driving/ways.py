@@ -71,6 +71,7 @@ def ways_from(board: SeenMap, place: Floats) -> Ways:
         from_, to = numbers[first][both], numbers[second][both]
         ends.append((from_, to, np.full(len(from_), SQUARE * np.hypot(i, j))))
     rows, columns, lengths = (np.concatenate(parts) for parts in zip(*ends, strict=True))
+    rows, columns = rows.astype(np.int32), columns.astype(np.int32)  # all that scipy 1.13's ways take
     graph = coo_array((lengths, (rows, columns)), shape=(fits.size, fits.size)).tocsr()
     start = int(numbers[here])
     length, before = dijkstra(graph, directed=False, indices=start, return_predecessors=True)

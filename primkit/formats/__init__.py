@@ -18,39 +18,14 @@ A file is written whole or not at all, apart from a drive's journal, which grows
 it says is refused in one sentence that begins with its name, and takes no more memory than a multiple of its size.
 """
 
-from .drives import DRIVE_ENDINGS, DRIVE_LIMIT, Drive, DriveJournal, load_drive, record_drive, save_drive
+from .drives import Drive, DriveJournal, load_drive, record_drive, save_drive
 from .files import StrPath, write_atomically
 from .maps import MAP_ENDINGS, MAP_LIMIT, load_world, save_world
-from .routes import ROUTE_ENDINGS, ROUTE_LIMIT, Route, load_route, save_route
-from .scans import SCAN_ENDINGS, SCANS_LIMIT, load_scans, save_scans
+from .routes import Route, load_route, save_route
+from .scans import SCANS_LIMIT, load_scans, save_scans
 from .suite import bundled_keys, paper_suite, published_suite, recorded_rows, scripted_drives
 
-__all__ = [
-    "load_world",
-    "save_world",
-    "paper_suite",
-    "published_suite",
-    "recorded_rows",
-    "bundled_keys",
-    "scripted_drives",
-    "load_scans",
-    "save_scans",
-    "Drive",
-    "DriveJournal",
-    "record_drive",
-    "save_drive",
-    "load_drive",
-    "Route",
-    "save_route",
-    "load_route",
-    "write_atomically",
-    "StrPath",
-    "MAP_ENDINGS",
-    "MAP_LIMIT",
-    "SCAN_ENDINGS",
-    "SCANS_LIMIT",
-    "DRIVE_ENDINGS",
-    "DRIVE_LIMIT",
-    "ROUTE_ENDINGS",
-    "ROUTE_LIMIT",
-]
+__all__ = ["load_world", "save_world", "load_scans", "save_scans", "MAP_ENDINGS", "MAP_LIMIT", "SCANS_LIMIT"]
+__all__ += ["paper_suite", "published_suite", "recorded_rows", "bundled_keys", "scripted_drives"]
+__all__ += ["Drive", "DriveJournal", "record_drive", "save_drive", "load_drive"]
+__all__ += ["Route", "save_route", "load_route", "write_atomically", "StrPath"]

@@ -16,7 +16,7 @@ Out: a ``Drive``, to the last bit; from a journal that was cut off, all scans bu
 (2, [[0.0, 0.0], [6.0, 6.0]])
 
 The first line of the file says what it is and which sensor saw it; each further line is one scan, handed to the system
-at once: who is killed in the middle of a drive loses nothing that was finished. No hit is ``null``.
+at once. No hit is ``null``.
 
 Source: the form is JSON Lines, jsonlines.org.
 """
@@ -33,10 +33,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arguments import Floats, as_point, as_points, check_type, limit, short
-from ..lidar import Lidar, Scans
+from ..lidar import Lidar, Scans, as_lidar
 from ..show import thumbnail
 from .files import LINE_LIMIT, StrPath, append_whole, as_path, bounded_read, lines_of, naming, opened, write_atomically
-from .values import numbers_in, parsed
+from .values import check_format, numbers_in, parsed
 
 DRIVE_ENDINGS = (".jsonl",)
 # Most of an hour with ten scans of 100 beams a second if all of them hit something, several hours otherwise.
@@ -46,7 +46,7 @@ DRIVE_FORMAT, DRIVE_VERSION = "primkit drive", 1
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """What was driven and what was seen on the way.
+    """What was driven and what was seen on the way. Raises ValueError if these do not fit together.
 
     Parameters
     ----------
@@ -55,13 +55,7 @@ class Drive:
     wheels : array_like, shape (P, 2)
         Speeds of the left and the right wheel that were held before each scan, radians per second; those before the
         first brought the robot to where the drive begins.
-    lidar : Lidar, optional
-        The sensor; the paper's by default.
-
-    Raises
-    ------
-    ValueError
-        If these do not fit together.
+    lidar : Lidar, default Lidar()
 
     Examples
     --------
@@ -78,8 +72,7 @@ class Drive:
     lidar: Lidar = Lidar()  # noqa: RUF009 - frozen, so that sharing it is safe
 
     def __post_init__(self) -> None:
-        check_type(self.lidar, Lidar, "lidar must be a Lidar, such as Lidar()")
-        _check_scans(self.scans, self.lidar)
+        _check_scans(self.scans, as_lidar(self.lidar))
         wheels = as_points(self.wheels, "wheels")
         if len(wheels) != len(self.scans):
             raise ValueError(f"wheels must hold two speeds for each of the {len(self.scans)} scans, got {len(wheels)}")
@@ -120,21 +113,10 @@ class DriveJournal:
         self._write(head)
 
     def add(self, scans: Scans, wheels: ArrayLike) -> None:
-        """Write one scan down, and hand it to the system.
+        """Write one scan down, with the wheel speeds held before it, shape (2,), rad/s, and hand it to the system.
 
-        Parameters
-        ----------
-        scans : Scans
-            One scan.
-        wheels : array_like, shape (2,)
-            Speeds of the left and the right wheel that were held before it, radians per second.
-
-        Raises
-        ------
-        ValueError
-            If it is not one scan of the journal's sensor, the journal is closed, or there is no room left.
-        OSError
-            If it cannot be written; the journal then stays as it was.
+        Raises ValueError if it is not one scan of the journal's sensor, the journal is closed, or there is no room
+        left; OSError if it cannot be written. The journal then stays as it was.
         """
         with naming(self.path.name):
             if self._file.closed:
@@ -161,58 +143,25 @@ class DriveJournal:
 
 
 def record_drive(path: StrPath, lidar: Lidar | None = None, *, replace: bool = False) -> DriveJournal:
-    """Begin to write a drive down, scan by scan.
+    """Begin to write a drive down, scan by scan, in a file ending in ``.jsonl``.
 
-    Parameters
-    ----------
-    path : str or path
-        The file, ending in ``.jsonl``.
-    lidar : Lidar, optional
-        The sensor; the paper's by default.
-    replace : bool
-        Begin anew where there is a file already. Without it such a file is refused: it may hold the only record of a
-        drive that broke off.
+    The journal's ``add(scans, wheels)`` writes one scan; use it in a ``with`` statement, or ``close()`` it. A file that
+    is there already is refused (``FileExistsError``), for it may hold the only record of a drive that broke off; with
+    ``replace=True`` it begins anew. Raises ValueError for another ending, OSError if the file cannot be written.
 
-    Returns
-    -------
-    DriveJournal
-        Its ``add(scans, wheels)`` writes one scan; use it in a ``with`` statement, or ``close()`` it.
-
-    Raises
-    ------
-    ValueError
-        If the ending is another one.
-    OSError
-        If the file is there already (``FileExistsError``), or cannot be written.
-
-    Examples
-    --------
     >>> record_drive("drive.txt")
     Traceback (most recent call last):
         ...
     ValueError: drive.txt: the name of a drive must end in .jsonl, got .txt
     """
-    lidar = Lidar() if lidar is None else lidar
-    check_type(lidar, Lidar, "lidar must be a Lidar, such as Lidar()")
-    return DriveJournal(path, lidar, replace=replace)
+    return DriveJournal(path, as_lidar(lidar), replace=replace)
 
 
 def save_drive(drive: Drive, path: StrPath) -> None:
-    """Write a whole drive at once, as a journal holds it.
+    """Write a whole drive at once, as a journal holds it, to a file ending in ``.jsonl``.
 
-    Parameters
-    ----------
-    drive : Drive
-        What was driven and seen.
-    path : str or path
-        The file, ending in ``.jsonl``; one that is there already is replaced.
-
-    Raises
-    ------
-    ValueError
-        If the ending is another one, or the drive is larger than ``load_drive`` reads.
-    OSError
-        If the file cannot be written; the old one then stays as it was.
+    A file that is there already is replaced. Raises ValueError for another ending, or a drive larger than
+    ``load_drive`` reads; OSError if the file cannot be written: the old one then stays as it was.
     """
     path = as_path(path, DRIVE_ENDINGS, "a drive")
     with naming(path.name):
@@ -224,23 +173,12 @@ def save_drive(drive: Drive, path: StrPath) -> None:
 
 
 def load_drive(path: StrPath) -> Drive:
-    """Read a drive, from a whole file or from the journal of one that broke off.
+    """Read a drive from a file ending in ``.jsonl``, a whole one or the journal of a drive that broke off.
 
-    Parameters
-    ----------
-    path : str or path
-        The file, ending in ``.jsonl``. A last line without an end, as a killed process leaves it, is passed over; the
-        file stays as it is.
+    A last line without an end, as a killed process leaves it, is passed over; the file stays as it is. Raises
+    ValueError if the file is no drive, one of another version, or a scan in it is damaged; OSError if there is no such
+    file (``FileNotFoundError``), or it cannot be read.
 
-    Raises
-    ------
-    ValueError
-        If the file is no drive, one of another version, or a scan in it is damaged.
-    OSError
-        If there is no such file (``FileNotFoundError``), or it cannot be read.
-
-    Examples
-    --------
     A drive on which nothing was scanned is a drive too:
 
     >>> import tempfile
@@ -294,13 +232,10 @@ def _check_scans(scans: Scans, lidar: Lidar) -> None:
 
 def _lidar_in(line: bytes) -> Lidar:
     """Return the sensor that the first line tells, or refuse a file that is no drive."""
-    told = None
+    told: Any = None
     with suppress(ValueError):
         told = parsed(line)
-    if not isinstance(told, dict) or told.get("format") != DRIVE_FORMAT:
-        raise ValueError(f'must be a drive, its first line with "format": "{DRIVE_FORMAT}", got {short(line[:40])}')
-    if told.get("version") != DRIVE_VERSION:
-        raise ValueError(f"must be a drive of version {DRIVE_VERSION}, got version {short(told.get('version'))}")
+    check_format(told, DRIVE_FORMAT, DRIVE_VERSION, "its first line with", line[:40])
     lidar, names = told.get("lidar"), {field.name for field in fields(Lidar)}
     if not isinstance(lidar, dict) or set({"model": "exact"} | lidar) != names:  # older drives tell no model
         raise ValueError(f"lidar must have {', '.join(sorted(names))}, got {short(lidar)}")

@@ -45,26 +45,11 @@ OLD = 10.0  # s: a temporary file that nobody has written to for so long, and no
 def write_atomically(path: StrPath, data: bytes | str) -> None:
     """Write a file whole or not at all: whoever reads it meanwhile sees all of the old or all of the new.
 
-    Parameters
-    ----------
-    path : str or path
-        The file; one that is there already is replaced and keeps its permissions. A link is followed.
-    data : bytes or str
-        The content; text becomes UTF-8, its line ends stay as they are.
+    A file that is there already keeps its permissions; a link is followed. Text becomes UTF-8, its line ends stay as
+    they are. The content goes to a temporary file in the same folder, down to the disc itself; then one step that the
+    system does not divide puts it in the old file's place. Raises OSError if it cannot be written
+    (``FileNotFoundError``: the folder is missing): the old file then stays as it was, and nothing is left beside it.
 
-    Raises
-    ------
-    OSError
-        If it cannot be written (``FileNotFoundError``: the folder is missing). The old file then stays as it
-        was, and nothing is left beside it.
-
-    Notes
-    -----
-    The content goes to a temporary file in the same folder, on the same disc, down to the disc itself; then
-    one step that the system does not divide puts it in the old file's place.
-
-    Examples
-    --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     write_atomically(f"{folder}/table.csv", "kind,rms")

@@ -93,34 +93,16 @@ def save_world(world: World, path: StrPath, *, properties: Sequence[Mapping[str,
 
 
 def load_world(path: StrPath) -> World:
-    """Read a world from GeoJSON.
+    """Read a world from a file ending in ``.geojson`` or ``.json``: a FeatureCollection, one Feature or one geometry.
 
-    Parameters
-    ----------
-    path : str or path
-        The file, ending in ``.geojson`` or ``.json``: a FeatureCollection, or one Feature or geometry alone.
+    A Polygon becomes a ``Polygon`` (first corner first, turned counter-clockwise), a Point with the property ``radius``
+    a ``Circle``. The board's size is the member ``size`` beside the features, 1 m when there is none; it has walls when
+    the member ``walls`` is true. All other properties are passed over, ``kind`` too. So is a position's third number,
+    the height that GeoJSON allows. Holes and Multi-geometries have no shape here.
 
-    Returns
-    -------
-    World
-        A Polygon becomes a ``Polygon`` (first corner first, turned counter-clockwise), a Point with the
-        property ``radius`` a ``Circle``. The board's size is the member ``size`` beside the features, 1 m
-        when there is none; it has walls when the member ``walls`` is true.
+    Raises ValueError if the file is not a map: the sentence names the file and the feature, counted from 1; OSError if
+    there is no such file (``FileNotFoundError``), or it cannot be read.
 
-    Raises
-    ------
-    ValueError
-        If the file is not a map; the sentence names the file and the feature, counted from 1.
-    OSError
-        If there is no such file (``FileNotFoundError``), or it cannot be read.
-
-    Notes
-    -----
-    A shape is what its geometry says: all properties but ``radius`` are passed over, ``kind`` too. So is a
-    position's third number, the height that GeoJSON allows. Holes and Multi-geometries have no shape here.
-
-    Examples
-    --------
     A clockwise triangle alone, as others may write it:
 
     >>> import pathlib, tempfile

@@ -19,7 +19,7 @@ from ..arguments import Floats, as_points, as_poses, as_positive, check_type, li
 from ..robot import PERIOD, check_way, drive, not_too_fast
 from ..world import World
 from .files import StrPath, as_path, bounded_read, naming, write_atomically
-from .values import numbers_in, parsed
+from .values import check_format, numbers_in, parsed
 
 ROUTE_ENDINGS = (".json",)
 ROUTE_LIMIT = 2 * 2**20  # bytes: hours of driving
@@ -29,24 +29,8 @@ ON_A_LINE = 8  # pairs of speeds
 
 @dataclass(frozen=True, eq=False)
 class Route:
-    """How the wheels were turned on a drive.
+    """How the wheels were turned on a drive: ``start``, ``wheels`` and ``period`` as for ``robot.drive``.
 
-    Parameters
-    ----------
-    start : array_like, shape (3,)
-        x [m], y [m], heading [rad], world frame.
-    wheels : array_like, shape (T, 2)
-        Speeds of the left and the right wheel, radians per second, at most 6.28 either way.
-    period : float
-        How long each pair is held, seconds.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of its range.
-
-    Examples
-    --------
     >>> Route((0, 0, 0), [(7, 0)])
     Traceback (most recent call last):
         ...
@@ -58,11 +42,8 @@ class Route:
     period: float = PERIOD
 
     def __post_init__(self) -> None:
-        start, wheels, period = (
-            as_poses(self.start),
-            as_points(self.wheels, "wheels"),
-            as_positive(self.period, "period"),
-        )
+        start, wheels = as_poses(self.start), as_points(self.wheels, "wheels")
+        period = as_positive(self.period, "period")
         if len(start) != 1:
             raise ValueError(f"start must be three finite numbers (x, y, heading), got {short(self.start)}")
         not_too_fast(wheels)
@@ -79,22 +60,7 @@ class Route:
 
 
 def save_route(route: Route, path: StrPath) -> None:
-    """Write a route as JSON, whole or not at all.
-
-    Parameters
-    ----------
-    route : Route
-        How the wheels were turned.
-    path : str or path
-        The file, ending in ``.json``; one that is there already is replaced.
-
-    Raises
-    ------
-    ValueError
-        If the ending is another one, or the route is larger than ``load_route`` reads.
-    OSError
-        If the file cannot be written; the old one then stays as it was.
-    """
+    """Write a route as JSON, to a file ending in ``.json``; refused as by ``save_drive``."""
     path = as_path(path, ROUTE_ENDINGS, "a route")
     with naming(path.name):
         check_type(route, Route, "must be a Route")
@@ -109,22 +75,11 @@ def save_route(route: Route, path: StrPath) -> None:
 
 
 def load_route(path: StrPath) -> Route:
-    """Read a route from JSON.
+    """Read a route from a file ending in ``.json``.
 
-    Parameters
-    ----------
-    path : str or path
-        The file, ending in ``.json``.
+    Raises ValueError if the file is no route, or one of another version; OSError if there is no such file
+    (``FileNotFoundError``), or it cannot be read.
 
-    Raises
-    ------
-    ValueError
-        If the file is no route, or one of another version.
-    OSError
-        If there is no such file (``FileNotFoundError``), or it cannot be read.
-
-    Examples
-    --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     save_route(Route((0, 0, 0), [(1.5, 2)]), f"{folder}/route.json")
@@ -135,10 +90,7 @@ def load_route(path: StrPath) -> Route:
     data = bounded_read(path, ROUTE_LIMIT)
     with naming(path.name):
         told = parsed(data)
-        if not isinstance(told, dict) or told.get("format") != ROUTE_FORMAT:
-            raise ValueError(f'must be a route, with "format": "{ROUTE_FORMAT}", got {short(told)}')
-        if told.get("version") != ROUTE_VERSION:
-            raise ValueError(f"must be a route of version {ROUTE_VERSION}, got version {short(told.get('version'))}")
+        check_format(told, ROUTE_FORMAT, ROUTE_VERSION, "with", told)
         check_type(told.get("wheels"), list, "wheels must be a list of pairs")
         wheels = [numbers_in({"each of the wheels": pair}, "each of the wheels", 2) for pair in told["wheels"]]
         return Route(

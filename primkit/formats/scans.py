@@ -38,22 +38,10 @@ HEADS = 4096  # bytes beside the numbers, that say what they are
 
 
 def save_scans(scans: Scans, path: StrPath) -> None:
-    """Write scans as compressed NumPy arrays.
+    """Write scans as compressed NumPy arrays, to a file ending in ``.npz``.
 
-    Parameters
-    ----------
-    scans : Scans
-        What the LiDAR saw, from way-points or along a drive.
-    path : str or path
-        The file, ending in ``.npz``; one that is there already is replaced.
-
-    Raises
-    ------
-    ValueError
-        If the ending is another one, the arrays do not fit together, or they are larger than ``load_scans``
-        reads.
-    OSError
-        If the file cannot be written; the old one then stays as it was.
+    A file that is there already is replaced. Raises ValueError for another ending, or scans larger than ``load_scans``
+    reads; OSError if the file cannot be written: the old one then stays as it was.
     """
     path = as_path(path, SCAN_ENDINGS, "a file of scans")
     with naming(path.name):
@@ -67,22 +55,11 @@ def save_scans(scans: Scans, path: StrPath) -> None:
 
 
 def load_scans(path: StrPath) -> Scans:
-    """Read scans from compressed NumPy arrays.
+    """Read scans from a file ending in ``.npz``; arrays beside those of scans are passed over.
 
-    Parameters
-    ----------
-    path : str or path
-        The file, ending in ``.npz``; arrays beside those of scans are passed over.
+    Raises ValueError if the file is not such an archive, or the arrays do not fit together; OSError if there is no such
+    file (``FileNotFoundError``), or it cannot be read.
 
-    Raises
-    ------
-    ValueError
-        If the file is not such an archive, or the arrays do not fit together.
-    OSError
-        If there is no such file (``FileNotFoundError``), or it cannot be read.
-
-    Examples
-    --------
     A scan from no pose at all is a scan too:
 
     >>> import tempfile

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import csv
 import json
+from collections.abc import Iterable
 from pathlib import Path
 
 from ..shapes import PRIMITIVES
@@ -29,26 +30,14 @@ SUITE = (*(f"1-{kind}" for kind in PRIMITIVES), *(f"{n}-{k:02d}" for n in (2, 3,
 
 
 def paper_suite() -> dict[str, World]:
-    """Return the 34 bundled maps.
+    """Return the 34 bundled maps, from ``"1-circle"`` to ``"4-10"``, by name.
 
-    Returns
-    -------
-    dict of str to World
-        ``"1-circle"``, ``"1-triangle"``, ``"1-rectangle"``, ``"1-pentagon"``, ``"2-01"`` to ``"4-10"``, in
-        this order.
+    Raises FileNotFoundError, as all of this module do, if the data are not where primkit is installed.
 
-    Raises
-    ------
-    FileNotFoundError
-        If the maps are not where primkit is installed.
-
-    Examples
-    --------
     >>> len(paper_suite()["4-10"].shapes)
     4
     """
-    folder = _data_folder() / "maps"
-    return {name: load_world(folder / f"{name}.geojson") for name in SUITE}
+    return _maps("maps", SUITE)
 
 
 def published_suite() -> dict[str, World]:
@@ -57,28 +46,16 @@ def published_suite() -> dict[str, World]:
     Their dimensions are whole centimetres. The property ``scored_as`` in the files is the rounded truth that the
     published code scores against; ``paper.published_values`` gives the same numbers.
 
-    Raises
-    ------
-    FileNotFoundError
-        If the maps are not where primkit is installed.
-
-    Examples
-    --------
     >>> suite = published_suite()
     >>> len(suite), list(suite)[:5]
     (34, ['1_circle', '1_pentagon', '1_quadrado', '1_triangulo', '2_circlecircle'])
     """
-    folder = _data_folder() / "published" / "maps"
-    return {
-        name: load_world(folder / f"{name}.geojson") for name in dict.fromkeys(row["map"] for row in recorded_rows())
-    }
+    return _maps("published/maps", dict.fromkeys(row["map"] for row in recorded_rows()))
 
 
 def recorded_rows() -> list[dict[str, str]]:
     """Return the 68 rows that the paper's authors recorded, as they stand in the file: 34 maps, two movements.
 
-    Examples
-    --------
     >>> recorded_rows()[0]["map"], recorded_rows()[0]["seconds"]
     ('1_circle', '10.03')
     """
@@ -91,8 +68,6 @@ def bundled_keys() -> dict[str, str]:
 
     A rule pressed them, see ``driving.keyed``, and nobody.
 
-    Examples
-    --------
     >>> bundled_keys()["1_circle"][:4]
     'AAAA'
     """
@@ -101,25 +76,19 @@ def bundled_keys() -> dict[str, str]:
 
 
 def scripted_drives() -> dict[str, Route]:
-    """Return the 34 bundled drives: one on each map of ``paper_suite``, steered by a script.
+    """Return the 34 bundled drives: one on each map of ``paper_suite``, by its name, steered by a script.
 
-    Returns
-    -------
-    dict of str to Route
-        By the names of the maps, in their order; ``route.poses(world)`` is where the robot scans.
+    ``route.poses(world)`` is where the robot scans.
 
-    Raises
-    ------
-    FileNotFoundError
-        If the drives are not where primkit is installed.
-
-    Examples
-    --------
     >>> scripted_drives()["4-10"].poses(paper_suite()["4-10"]).shape[1]
     3
     """
     folder = _data_folder() / "drives"
     return {name: load_route(folder / f"{name}.json") for name in SUITE}
+
+
+def _maps(folder: str, names: Iterable[str]) -> dict[str, World]:
+    return {name: load_world(_data_folder() / folder / f"{name}.geojson") for name in names}
 
 
 def _data_folder() -> Path:

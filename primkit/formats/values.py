@@ -35,6 +35,15 @@ def parsed(data: bytes) -> Any:
         raise ValueError(f"must be valid JSON, got {short(data[:40])}") from None
 
 
+def check_format(told: Any, name: str, version: int, told_by: str, got: Any) -> None:
+    """Refuse what does not say that it is of this format and version."""
+    noun = name.removeprefix("primkit ")
+    if not isinstance(told, dict) or told.get("format") != name:
+        raise ValueError(f'must be a {noun}, {told_by} "format": "{name}", got {short(got)}')
+    if told.get("version") != version:
+        raise ValueError(f"must be a {noun} of version {version}, got version {short(told.get('version'))}")
+
+
 def numbers_in(told: dict[str, Any], name: str, n: int, least: float = -inf) -> list[float]:
     """Return n finite numbers; where there is a least one, null stands for infinity.
 
@@ -49,10 +58,8 @@ def numbers_in(told: dict[str, Any], name: str, n: int, least: float = -inf) -> 
     if not isinstance(values, list) or len(values) != n:
         raise ValueError(f"{rule}, got {f'{len(values)} of them' if isinstance(values, list) else short(values)}")
     for value in values:
+        number = isinstance(value, (int, float)) and not isinstance(value, bool)
         # Compared, not converted: a whole number may have hundreds of digits.
-        number = (
-            isinstance(value, (int, float)) and not isinstance(value, bool) and max(least, -LARGEST) <= value <= LARGEST
-        )
-        if not (number or (value is None and nothing)):
+        if not ((number and max(least, -LARGEST) <= value <= LARGEST) or (value is None and nothing)):
             raise ValueError(f"{rule}, got {short(value)}")
     return [inf if value is None else float(value) for value in values]

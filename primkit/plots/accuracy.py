@@ -50,6 +50,8 @@ OTHER_LOOKS: tuple[dict[str, Any], ...] = (
 def plot_accuracy(tables: Iterable[Table]) -> Figure:
     """Return one figure: weighted accuracy within 5 mm and 1 mm against what was changed, with 95 % bands.
 
+    Raises ValueError if none of these sweeps is there.
+
     Parameters
     ----------
     tables : iterable of Table
@@ -60,11 +62,6 @@ def plot_accuracy(tables: Iterable[Table]) -> Figure:
     -------
     Figure
         Made without pyplot. A notebook shows it when it is a cell's last value; ``save_figure`` writes it to a file.
-
-    Raises
-    ------
-    ValueError
-        If none of these sweeps is there.
     """
     tables = list(tables)
     for table in tables:

@@ -32,6 +32,8 @@ FAULT_LETTERS = 46  # letters of a wrong answer's name
 def plot_class(name: str, students: int, parts: Sequence[Part]) -> Figure:
     """Return the picture of a class and a problem set.
 
+    Raises ValueError if there is no part.
+
     Parameters
     ----------
     name : str
@@ -40,11 +42,6 @@ def plot_class(name: str, students: int, parts: Sequence[Part]) -> Figure:
         How many were graded.
     parts : sequence of (task, part, share right, (usual wrong answer, count))
         In the order of the problem set; shares from 0 to 1.
-
-    Raises
-    ------
-    ValueError
-        If there is no part.
     """
     if not parts:
         raise ValueError("parts must hold at least one part of a problem set")

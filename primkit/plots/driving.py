@@ -54,6 +54,8 @@ GHOST_GAP = 0.004  # m: a point farther than this from every outline belongs to 
 def plot_drive(world: World, drive: Drive, n_frames: int = 6) -> Figure:
     """Return one figure with frames of a drive: the way so far, what was seen by then, and what of it is new.
 
+    Raises ValueError if the drive has no scans, or an argument is of another type.
+
     Parameters
     ----------
     world : World
@@ -68,11 +70,6 @@ def plot_drive(world: World, drive: Drive, n_frames: int = 6) -> Figure:
     Figure
         Made without pyplot, so that nothing stays open. A notebook shows it when it is a cell's last value;
         ``save_figure`` writes it to a file.
-
-    Raises
-    ------
-    ValueError
-        If the drive has no scans, or an argument is of another type.
 
     Notes
     -----

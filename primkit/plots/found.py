@@ -55,6 +55,8 @@ def plot_found(
 ) -> Axes:
     """Draw the shapes that were found over the truth, with their errors (the paper's Figure 3).
 
+    Raises ValueError if the report is about other shapes than those found, or an argument is of another type.
+
     Parameters
     ----------
     found : iterable of Detection, Circle and Polygon
@@ -70,11 +72,6 @@ def plot_found(
         What to say above it; what there is to see when not given, nothing when empty.
     color : color, optional
         Of all outlines that were found; of each kind its own when not given.
-
-    Raises
-    ------
-    ValueError
-        If the report is about other shapes than those found, or an argument is of another type.
 
     Examples
     --------

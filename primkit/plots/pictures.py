@@ -96,10 +96,11 @@ def plot_scan(
 ) -> Axes:
     """Draw one scan: the robot, its LiDAR's range, and every beam (the paper's Figure 1a).
 
+    Raises ValueError if there is no scan with that index, or an argument is of another type.
+
     Parameters
     ----------
     world : World
-        What stands on the board.
     scans : Scans
         What the LiDAR saw.
     index : int
@@ -112,11 +113,6 @@ def plot_scan(
         What to say above it; what there is to see when not given, nothing when empty.
     color : color, optional
         Of the beams that hit; orange when not given.
-
-    Raises
-    ------
-    ValueError
-        If there is no scan with that index, or an argument is of another type.
 
     Examples
     --------
@@ -179,10 +175,11 @@ def plot_points(
 ) -> Axes:
     """Draw the grid's points (the paper's Figure 2a).
 
+    Raises ValueError if points are not finite (N, 2), or the size is not above zero.
+
     Parameters
     ----------
-    points : array_like, shape (N, 2)
-        Metres.
+    points : array_like, shape (N, 2), metres
     ax : Axes, optional
         Where to draw.
     size : float
@@ -191,11 +188,6 @@ def plot_points(
         What to say above it; what there is to see when not given, nothing when empty.
     color : color, optional
         Of the points; black when not given.
-
-    Raises
-    ------
-    ValueError
-        If points are not finite (N, 2), or the size is not above zero.
 
     Examples
     --------
@@ -216,10 +208,12 @@ def plot_clusters(
 ) -> Axes:
     """Draw each cluster in its own colour, with its own marker and its number (the paper's Figure 2b).
 
+    Raises ValueError if points are not finite (N, 2), labels are not a whole number for each of them, or the size is
+    not above zero.
+
     Parameters
     ----------
-    points : array_like, shape (N, 2)
-        Metres.
+    points : array_like, shape (N, 2), metres
     labels : array_like of int, shape (N,)
         Which cluster each point belongs to, from 0; -1 for strays, which become grey crosses.
     ax : Axes, optional
@@ -228,12 +222,6 @@ def plot_clusters(
         Side of the board in metres.
     title : str, optional
         What to say above it; what there is to see when not given, nothing when empty.
-
-    Raises
-    ------
-    ValueError
-        If points are not finite (N, 2), labels are not a whole number for each of them, or the size is not above
-        zero.
 
     Examples
     --------

@@ -54,6 +54,8 @@ def plot_story(
 ) -> Figure:
     """Return one figure with the whole story: a scan, the points, the clusters, and the shapes with their errors.
 
+    Raises ValueError if points, labels or report do not fit, as in the single plots.
+
     Parameters
     ----------
     world : World
@@ -74,11 +76,6 @@ def plot_story(
     Figure
         Made without pyplot, so that nothing stays open and no display is needed. A notebook shows it when it is
         a cell's last value; ``save_figure`` writes it to a file.
-
-    Raises
-    ------
-    ValueError
-        If points, labels or report do not fit, as in the single plots.
 
     Examples
     --------

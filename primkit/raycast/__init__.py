@@ -11,14 +11,7 @@ Out: distances, shape (P, B), metres; infinity where a beam meets nothing.
 
 The same twice. ``plain.py`` asks every beam about every side, as one would write it first: slow, easy to trust, and
 the oracle of the other. ``fast.py`` turns the question round and asks every side which beams it stops; the work
-grows with what is seen, and every hit is exact. The rooms, each of which imports only those before it:
-
-=============  ==============================================================
-``plain.py``   every beam about every side: the slow form
-``near.py``    which shapes are near enough to be seen from where
-``fan.py``     which beams lie between two bearings
-``fast.py``    every side about its beams: the fast form, with its derivation
-=============  ==============================================================
+grows with what is seen (``near.py``, ``fan.py``), and every hit is exact.
 """
 
 from .fast import cast, cast_rays

@@ -24,13 +24,7 @@ CORNER_HIT = 1e-12
 
 
 class Fan:
-    """The beams of one scan.
-
-    Parameters
-    ----------
-    angles : array, shape (B,)
-        Bearings from the heading in radians, increasing within one turn; at least one.
-    """
+    """The beams of one scan: ``angles`` from the heading, shape (B,), radians, increasing within one turn; B >= 1."""
 
     def __init__(self, angles: Floats) -> None:
         self.size = len(angles)
@@ -44,8 +38,7 @@ class Fan:
     def between(self, first: Floats, last: Floats) -> tuple[Ints, Ints]:
         """Return each (interval, beam) with the beam in the interval: two index arrays.
 
-        K intervals of bearings go counter-clockwise from ``first`` to ``last``, shape (K,), radians, by less than a
-        turn. One whose last bearing is below its first is empty.
+        Intervals go from ``first`` on to ``last``, (K,), rad, by less than a turn; empty where the last is below.
         """
         low = self._beams_before(first - CORNER_HIT)
         count = np.maximum(self._beams_before(last + CORNER_HIT) - low, 0)

@@ -3,10 +3,9 @@
 In:  a ``World``, poses, shape (P, 3): x [m], y [m], heading [rad], and the beams' bearings, shape (B,).
 Out: distances, shape (P, B), metres; infinity where a beam meets nothing.
 
-How it is fast. The plain way asks every beam of every pose about every side: P x B x S questions, and nearly all
-answers are no. Turn the question round: ask a side, once for each pose, which beams it stops. It answers with an
-interval of bearings, beams are evenly spread, so that their numbers follow by a division (``fan.py``), and only they
-are computed.
+The plain way asks every beam of every pose about every side, and nearly all answers are no. Turn the question round:
+ask a side, once for each pose, which beams it stops. It answers with an interval of bearings; beams are evenly spread,
+so that their numbers follow by a division (``fan.py``), and only they are computed.
 
 A side, as seen by the robot R. F is the foot of the perpendicular on the side's line, at the distance h::
 
@@ -33,9 +32,7 @@ sqrt(d^2 - r^2) long; or up to where the range ends, if that is less. Robot, cen
 distance q, make a triangle: the beams lie within arccos((d^2 + q^2 - r^2) / (2 d q)) of the centre's bearing. At phi
 from it, the near side of the circle is d cos(phi) less half a chord away, and a chord is 2 sqrt(r^2 - (d sin(phi))^2).
 
-A wall is a polygon of one side: beyond it all is solid.
-
-Last, a beam keeps the nearest of its hits.
+A wall is a polygon of one side: beyond it all is solid. Last, a beam keeps the nearest of its hits.
 
 Legend: a pair is one pose with one shape near enough to be seen from it (``near.py``); "toward" is the bearing of F, or
 of the circle's centre, from the robot's heading, and phi a beam's bearing from there.
@@ -57,8 +54,7 @@ from .near import Near
 Hits = tuple[Ints, Floats, Ints]  # where in the table of ranges, how far; and the poses that lie in a shape
 
 # Poses are cast in blocks of at most so many pairs (of polygons with five sides) and beams: some MB, which stay in the
-# cache, and which the system does not take back between two blocks (getting them again would cost as much as all the
-# computing).
+# cache, and which the system does not take back between two blocks.
 PAIRS_PER_BLOCK, BEAMS_PER_BLOCK = 16_384, 200_000
 MOST_RANGES = 100_000_000  # at once: 800 MB
 # From a robot on a side, in line with it, rounding could turn a beam past the quarter turn, where the tangent changes
@@ -67,28 +63,17 @@ EDGE_ON = 2 * CORNER_HIT
 
 
 def cast_rays(world: World, poses: ArrayLike, angles: ArrayLike, range_max: float = np.inf) -> Floats:
-    """Return the exact distance from each pose along each beam to the first outline.
+    """Return the exact distance from each pose along each beam to the first outline, shape (P, B), metres.
+
+    ``inf`` where a beam meets nothing, and everywhere from a pose inside a shape. Raises ValueError if poses are not
+    (P, 3), angles do not increase within one turn, or range_max is not above zero.
 
     Parameters
     ----------
     world : World
-        What stands on the board.
-    poses : array_like, shape (P, 3)
-        x [m], y [m], heading [rad], world frame.
-    angles : array_like, shape (B,)
-        Bearings from the heading in radians, increasing, within one turn.
-    range_max : float
-        Outlines farther off than this are not looked at, in metres.
-
-    Returns
-    -------
-    array, shape (P, B)
-        Metres; ``inf`` where a beam meets nothing, and everywhere from a pose inside a shape.
-
-    Raises
-    ------
-    ValueError
-        If poses are not (P, 3), angles do not increase within one turn, or range_max is not above zero.
+    poses : array_like, shape (P, 3): x [m], y [m], heading [rad], world frame
+    angles : array_like, shape (B,): bearings from the heading in radians, increasing, within one turn
+    range_max : float, metres: outlines farther off are not looked at
 
     Examples
     --------

@@ -17,22 +17,13 @@ import numpy as np
 
 from ..arguments import Floats, Ints
 
-# From this many shapes on, looking up a cell is faster than measuring the distance to all.
-CELLS_FROM = 24
+CELLS_FROM = 24  # shapes: from so many on, looking up a cell is faster than measuring the distance to all
 # A cell is a third of the widest circle from which a shape is seen, but there are at most so many for each shape.
 CELLS_PER_CIRCLE, CELLS_PER_SHAPE = 3, 16
 
 
 class Near:
-    """The shapes of a board, by position.
-
-    Parameters
-    ----------
-    x, y, radii : array, shape (N,)
-        The circle around each shape, metres.
-    reach : float
-        How far the sensor sees, metres; may be infinite.
-    """
+    """The shapes of a board, by the circle around each, shape (N,), metres; ``reach`` [m] may be infinite."""
 
     def __init__(self, x: Floats, y: Floats, radii: Floats, reach: float) -> None:
         self.x, self.y, self.far = x, y, radii + reach

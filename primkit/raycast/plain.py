@@ -26,25 +26,8 @@ from ..shapes import Circle, Shape
 from ..world import World
 
 
-def cast_plainly(world: World, poses: ArrayLike, angles: ArrayLike, range_max: float = inf) -> NDArray[np.float64]:
-    """Return what ``cast_rays`` returns, up to rounding.
-
-    Parameters
-    ----------
-    world : World
-        What stands on the board.
-    poses : array_like, shape (P, 3)
-        x [m], y [m], heading [rad], world frame.
-    angles : array_like, shape (B,)
-        Bearings from the heading in radians.
-    range_max : float
-        A hit farther off than this is none, in metres.
-
-    Returns
-    -------
-    array, shape (P, B)
-        Metres; ``inf`` where a beam meets nothing, and everywhere from a pose inside a shape.
-    """
+def cast_plainly(world: World, poses: ArrayLike, angles: ArrayLike) -> NDArray[np.float64]:
+    """Return what ``cast_rays`` returns for the same arguments, up to rounding; angles may come in any order."""
     poses, angles = np.reshape(poses, (-1, 3)), np.asarray(angles, dtype=float)
     ranges = np.full((len(poses), len(angles)), inf)
     for i, (x, y, heading) in enumerate(poses.tolist()):
@@ -53,10 +36,8 @@ def cast_plainly(world: World, poses: ArrayLike, angles: ArrayLike, range_max: f
             continue
         for j, angle in enumerate(angles.tolist()):
             ux, uy = cos(heading + angle), sin(heading + angle)
-            nearest = _to_sides(world.walls.tolist(), x, y, ux, uy)
-            nearest = min([nearest, *(_distance_along(shape, x, y, ux, uy) for shape in world.shapes)])
-            if nearest <= range_max:
-                ranges[i, j] = nearest
+            wall = _to_sides(world.walls.tolist(), x, y, ux, uy)
+            ranges[i, j] = min([wall, *(_distance_along(shape, x, y, ux, uy) for shape in world.shapes)])
     return ranges
 
 

@@ -158,6 +158,7 @@ def _beads(points: Floats, size: float) -> tuple[Floats, NDArray[np.bool_]]:
 
     ij = np.floor((points - points.min(axis=0, initial=np.inf)) / size).astype(np.int64)
     square, n = np.unique(ij, axis=0, return_inverse=True, return_counts=True)[1:]
+    square = square.ravel().astype(np.intp, copy=False)  # numpy 2.0 returns a column
     beads = np.column_stack([np.bincount(square, axis, len(n)) / n for axis in points.T])
     near = cKDTree(points).query_ball_point(beads, max(COMPANY * BEAD_CELLS * CELL, size), return_length=True)
     return beads, near < LEAST_COMPANY

@@ -76,6 +76,7 @@ def bending(residuals: Floats, n_numbers: int, spread: float) -> float:
         return BEND_COST
     n_blocks = n_numbers + bends
     block = np.arange(len(residuals)) * n_blocks // len(residuals)
+    block = block.astype(np.intp, copy=False)
     sums, n = np.bincount(block, residuals), np.bincount(block)
     within = ((residuals**2).sum() - (sums**2 / n).sum()) / (len(residuals) - n_blocks)
     variance = n * max(within, LEAST_SPREAD**2) + n**2 * shared_rounding(spread) * CELL_STD**2

@@ -73,8 +73,6 @@ def thin_out(cells: Ints, most: int = MOST_CELLS) -> Bools:
     A cell is chosen whatever else there is: while the share stays the same, the chosen cells of a map that grows only
     grow, and the last look is a warm start for the next.
 
-    Examples
-    --------
     >>> cells = np.stack(np.meshgrid(np.arange(100), np.arange(100)), axis=-1).reshape(-1, 2)
     >>> [int(thin_out(cells[:n], 4000).sum()) for n in (4000, 10_000)]
     [4000, 3269]

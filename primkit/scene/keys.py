@@ -21,15 +21,12 @@ KEY_MOTIONS = {"forward": (1, 0), "back": (-1, 0), "left": (0, 1), "right": (0, 
 def wheels_for(held: Iterable[str]) -> tuple[float, float]:
     """Return the speeds of the left and the right wheel while some keys are held, radians per second.
 
+    Raises ValueError if there is another word among them.
+
     Parameters
     ----------
     held : iterable of str
         Any of ``"forward"``, ``"back"``, ``"left"`` and ``"right"``; opposite ones cancel each other.
-
-    Raises
-    ------
-    ValueError
-        If there is another word among them.
 
     Examples
     --------

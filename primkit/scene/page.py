@@ -48,8 +48,6 @@ def tell_ranges(ranges: Floats) -> Ints:
 def describe(one: Detection) -> Message:
     """Return how a shape is drawn: its outline in stretches that were seen, or are only supposed, and its name.
 
-    Examples
-    --------
     Half of a circle was seen; the last stretch closes on the first:
 
     >>> from primkit.robust.deviations import Certainty

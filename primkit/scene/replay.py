@@ -38,6 +38,8 @@ MOST_RANGE = 32_767  # tenths of a millimetre: ranges go to the page as whole nu
 def replay(drive: Drive, world: World | None = None, *, rng: int = 0) -> Replay:
     """Show a drive as a film: play, pause, and a slider for the time.
 
+    Raises ValueError if the drive has no scans, or an argument is of another type.
+
     Parameters
     ----------
     drive : Drive
@@ -51,11 +53,6 @@ def replay(drive: Drive, world: World | None = None, *, rng: int = 0) -> Replay:
     -------
     Replay
         A widget, shown when it is the last value of a cell. ``plot_drive`` draws the same as a strip of frames.
-
-    Raises
-    ------
-    ValueError
-        If the drive has no scans, or an argument is of another type.
 
     Examples
     --------

@@ -47,6 +47,8 @@ def drive_scene(
 ) -> Scene:
     """Show a board on which the robot is driven by hand: W A S D, the arrow keys, or the buttons.
 
+    Raises ValueError if an argument is of another type, or the robot has no room on the board.
+
     Parameters
     ----------
     world : World
@@ -68,11 +70,6 @@ def drive_scene(
     Scene
         A widget, shown when it is the last value of a cell. Its ``state`` has all that the robot knows: ``pose``,
         ``grid``, ``found``, ``score``, ``time``; ``state.finish()`` waits until the shapes are up to date.
-
-    Raises
-    ------
-    ValueError
-        If an argument is of another type, or the robot has no room on the board.
 
     Examples
     --------

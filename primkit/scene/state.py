@@ -36,7 +36,7 @@ from ..driving.seen_map import EXPLAINED, SeenMap
 from ..evaluation import evaluate
 from ..formats import DriveJournal, record_drive
 from ..grid import Grid
-from ..lidar import Lidar, Scans, scan
+from ..lidar import Lidar, Scans, as_lidar, scan
 from ..measure import Detection
 from ..robot import advance, start_pose
 from ..table import Table
@@ -66,17 +66,14 @@ class Step:
 class DriveState:
     """A robot that is driven by hand, and its map.
 
+    Raises ValueError if an argument is of another type, or the robot has no room on the board.
+
     Parameters
     ----------
     world, lidar, journal, moving, rng
         As for ``drive_scene``. The journal is made with the first step, and another one after ``undo``.
     executor : Executor, optional
         Who looks for shapes: ``AtOnce()`` by default, ``beside()`` in a thread of its own.
-
-    Raises
-    ------
-    ValueError
-        If an argument is of another type, or the robot has no room on the board.
     """
 
     def __init__(
@@ -90,8 +87,7 @@ class DriveState:
         executor: Executor | None = None,
     ) -> None:
         check_type(world, World, "world must be a World, as in drive_scene(world)")
-        self.lidar, self.seed, self.moving = Lidar() if lidar is None else lidar, rng, moving
-        check_type(self.lidar, Lidar, "lidar must be a Lidar, such as Lidar()")
+        self.lidar, self.seed, self.moving = as_lidar(lidar), rng, moving
         check_type(moving, bool, "moving must be True or False")
         check_type(rng, int, "rng must be a seed, a whole number")
         self.journal = None if journal is None else Path(journal)
@@ -123,15 +119,12 @@ class DriveState:
     def step(self, wheels: ArrayLike = STANDING_WHEELS) -> Step:
         """Turn the wheels for a period, scan, and map: ``move`` and ``map`` together.
 
+        Raises ValueError if the wheels are too fast; all then stays as it was.
+
         Parameters
         ----------
         wheels : array_like, shape (2,)
             Speeds of the left and the right wheel, radians per second, as ``wheels_for`` gives them.
-
-        Raises
-        ------
-        ValueError
-            If the wheels are too fast; all then stays as it was.
         """
         new, gone = self.move(wheels)
         return Step(new, gone, self.stopped, self.map())
@@ -210,11 +203,8 @@ class DriveState:
     def rearrange(self, world: World) -> None:
         """Put things where they are in another world, of the same size; the robot stays where it is.
 
-        Raises
-        ------
-        ValueError
-            If the map is one of things that stand still, the board is of another size, or the robot would stand in a
-            shape.
+        Raises ValueError if the map is one of things that stand still, the board is of another size, or the robot would
+        stand in a shape.
         """
         if not self.moving:
             raise ValueError("things must be allowed to move, as in drive_scene(world, moving=True)")

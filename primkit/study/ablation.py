@@ -37,8 +37,8 @@ from ..table import Table
 from ..world import PENTAGON, World
 from .repeat import THEIRS
 
-REACH = 0.005  # m: of lines and circles in the first edition
-STRICT = REACH - 1e-9  # what lies at 5 cells is out, what is nearer is in
+FIRST_REACH = 0.005  # m: of lines and circles in the first edition
+STRICT = FIRST_REACH - 1e-9  # what lies at 5 cells is out, what is nearer is in
 
 Find = Callable[[Floats, int, np.random.Generator], list[Shape]]
 Score = Callable[[Sequence[Shape], World], float | None]  # the weighted accuracy; None for a run that crashed
@@ -88,7 +88,7 @@ def _points(world: World, rendered: bool) -> Floats:
 # --- how shapes are found -----------------------------------------------------------------------------------
 
 
-def _first_found(points: Floats, n: int, rng: np.random.Generator, reach: float = REACH) -> list[Shape]:
+def _first_found(points: Floats, n: int, rng: np.random.Generator, reach: float = FIRST_REACH) -> list[Shape]:
     """Find shapes as the first edition did."""
     labels = kmeans(points, n, rng=rng)
     shapes = []
@@ -102,7 +102,7 @@ def _first_measured(points: Floats, n_lines: int, rng: np.random.Generator) -> S
     """Measure all points of a cluster; a pentagon is as wide as they are, a circle takes those within 5 mm."""
     kind = kind_by_lines(n_lines)
     if kind == "circle":
-        return find_circle(points, REACH, refit=False, rng=rng)
+        return find_circle(points, FIRST_REACH, refit=False, rng=rng)
     if kind != "pentagon":
         return measure_as_published(points, n_lines)
     shape = Polygon(PENTAGON * float(np.ptp(points[:, 0]) / np.ptp(PENTAGON[:, 0])))

@@ -35,7 +35,7 @@ from ..world import World
 
 NOBODY = -1  # the owner of a point that comes from nowhere
 NOISE_LIMIT = 6.0  # a reading farther than this from the true range, in standard deviations, is no noise
-QUARTER = np.array([[0, -1], [1, 0]])  # a turn
+TURN_LEFT = np.array([[0, -1], [1, 0]])  # by a quarter
 EXACT = 1e-9  # m: without noise a reading differs by rounding at most
 
 
@@ -195,7 +195,7 @@ def _fit_polygon(sides: list[Floats], *, right_angles: bool) -> Polygon | None:
     middles = np.array([side.mean(axis=0) for side in sides])
     scatters = np.array([(side - middle).T @ (side - middle) for side, middle in zip(sides, middles, strict=True)])
     if right_angles:
-        turns = np.array([np.linalg.matrix_power(QUARTER, k) for k in range(4)])
+        turns = np.array([np.linalg.matrix_power(TURN_LEFT, k) for k in range(4)])
         together = (turns.transpose(0, 2, 1) @ scatters @ turns).sum(axis=0)
         normals = turns @ np.linalg.eigh(together)[1][:, 0]
     else:

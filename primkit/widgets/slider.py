@@ -261,6 +261,8 @@ def explore(
 ) -> Explorer:
     """Return a picture with controls.
 
+    Raises ValueError if a setting names a control that is not there, or a value that it does not hold.
+
     Parameters
     ----------
     draw : callable
@@ -272,11 +274,6 @@ def explore(
         Values worth looking at, by name; a control that is not named keeps its start.
     diagram : callable, optional
         Returns the drawing behind the lesson's formula, in which nothing moves.
-
-    Raises
-    ------
-    ValueError
-        If a setting names a control that is not there, or a value that it does not hold.
     """
     return Explorer(draw, controls, settings, diagram)
 

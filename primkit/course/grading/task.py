@@ -78,17 +78,14 @@ class Part:
 class Task:
     """A student's function, marked part by part.
 
+    Raises ValueError if there is no part, a part's points are not above zero, or a part checks another function.
+
     Parameters
     ----------
     name : str
         The name of the function in the problem set.
     parts : iterable of Part
         What it is marked by.
-
-    Raises
-    ------
-    ValueError
-        If there is no part, a part's points are not above zero, or a part checks another function.
     """
 
     name: str

@@ -6,7 +6,7 @@ Out: the experiments of each of its levels.
 >>> [level.name for level in SWEEPS["gap"].levels]
 ['gap 5 cm', 'gap 3 cm']
 >>> from primkit.study.oracle import ORACLE
->>> [e.map for e in experiments(PLAIN, {"oracle": ORACLE}, n_maps=3)]
+>>> [e.map for e in experiments(UNCHANGED, {"oracle": ORACLE}, n_maps=3)]
 ['free-1', 'free-2', 'free-3']
 
 All sweeps start from the same point: free maps (any rotation, irregular), one to six shapes in turn, gaps of 5 cm, the
@@ -110,7 +110,7 @@ class Sweep:
     remedies: bool = False
 
 
-PLAIN = Condition()
+UNCHANGED = Condition()
 HARD = Condition(gap=0.03, noise_std=0.002, spurious=0.02)
 NOISES_MM = (0, 1, 2, 5, 10)  # mm
 FREE_MAPS = "Free maps (any rotation, irregular), 1 to 6 shapes, gaps of 5 cm"
@@ -121,7 +121,8 @@ def _noisy(start: Condition) -> tuple[Level, ...]:
 
 
 def _crowd(n: int) -> Level:
-    return Level(count(n, "shape"), n, replace(PLAIN, n_shapes=n, gap=PLAIN.gap if n <= MOST_MIXED else CROWDED_GAP))
+    gap = UNCHANGED.gap if n <= MOST_MIXED else CROWDED_GAP
+    return Level(count(n, "shape"), n, replace(UNCHANGED, n_shapes=n, gap=gap))
 
 
 SWEEPS: Mapping[str, Sweep] = {
@@ -131,7 +132,7 @@ SWEEPS: Mapping[str, Sweep] = {
         _noisy(Condition("suite")),
         "The paper's 34 maps; with noise each is scanned several times, and its runs are one draw of the bootstrap.",
     ),
-    "noise": Sweep("Range noise, free maps", "range noise [mm]", _noisy(PLAIN), f"{FREE_MAPS}."),
+    "noise": Sweep("Range noise, free maps", "range noise [mm]", _noisy(UNCHANGED), f"{FREE_MAPS}."),
     "shapes": Sweep(
         "Number of shapes, free maps",
         "shapes (gaps 5 cm; above 6: 3 cm)",
@@ -141,25 +142,25 @@ SWEEPS: Mapping[str, Sweep] = {
     "scans": Sweep(
         "Number of scans, free maps",
         "way-points scanned from",
-        tuple(Level(f"{n} scans", n, replace(PLAIN, n_scans=n if n < 77 else None)) for n in (10, 20, 40, 77)),
+        tuple(Level(f"{n} scans", n, replace(UNCHANGED, n_scans=n if n < 77 else None)) for n in (10, 20, 40, 77)),
         f"{FREE_MAPS}, no noise; random way-points out of the 77. With few, sides are not seen by anyone.",
     ),
     "spurious": Sweep(
         "Spurious returns, free maps",
         "spurious beams [%]",
-        tuple(Level(f"{p} % spurious", p, replace(PLAIN, spurious=p / 100)) for p in (0, 1, 2, 5)),
+        tuple(Level(f"{p} % spurious", p, replace(UNCHANGED, spurious=p / 100)) for p in (0, 1, 2, 5)),
         f"{FREE_MAPS}, no noise; a spurious beam returns a random range.",
     ),
     "gap": Sweep(
         "Gap between shapes, free maps",
         "gap [cm]",
-        tuple(Level(f"gap {cm} cm", cm, replace(PLAIN, gap=cm / 100)) for cm in (5, 3)),
+        tuple(Level(f"gap {cm} cm", cm, replace(UNCHANGED, gap=cm / 100)) for cm in (5, 3)),
         "Free maps, 1 to 6 shapes, no noise.",
     ),
     "remedies": Sweep(
         "What each remedy buys",
         "",
-        (Level("plain", 0, PLAIN), Level("hard", 1, HARD)),
+        (Level("plain", 0, UNCHANGED), Level("hard", 1, HARD)),
         "Each method has all remedies of those above it; ROBUST adds the second opinion. "
         f"plain: {FREE_MAPS[0].lower()}{FREE_MAPS[1:]}, no noise. "
         "hard: gaps of 3 cm, 2 mm noise, 2 % spurious returns.",
