@@ -128,3 +128,48 @@ def test_few_points_are_a_shape_where_there_are_no_strays():
     """A first look at a shape has some ten points."""
     corner = [(x / 100, 0.0) for x in range(12)] + [(0.0, y / 100) for y in range(1, 8)]
     assert len(pk.find_shapes(corner, rng=0)) == 1
+
+
+# --- two things that stand close, and thin ones ------------------------------------------------------------------
+
+
+def square(x):
+    return pk.Polygon([(x, -0.05), (x + 0.1, -0.05), (x + 0.1, 0.05), (x, 0.05)])
+
+
+@pytest.mark.parametrize("gap", [0.005, 0.02])
+def test_two_circles_with_a_narrow_gap_are_two(gap):
+    world = pk.World([pk.Circle((-0.07 - gap / 2, 0.013), 0.07), pk.Circle((0.05 + gap / 2, 0.013), 0.05)])
+    found = pk.find_shapes(seen_on(world), rng=0)
+    assert pk.evaluate(found, world).weighted_accuracy == 1.0
+
+
+@pytest.mark.parametrize("gap", [0.015, 0.02])
+def test_what_was_seen_in_the_mouth_between_two_shapes_parts_them(gap):
+    world = pk.World([square(-0.1 - gap / 2), square(gap / 2)])
+    assert pk.evaluate(pk.find_shapes(seen_on(world), rng=0), world).weighted_accuracy == 1.0
+
+
+@pytest.mark.parametrize("gap", [0.005, 0.01])
+def test_where_hardly_anything_was_seen_in_the_mouth_nothing_is_certain_that_is_wrong(gap):
+    for x in (-0.013, 0.021):
+        world = pk.World([square(x - 0.1 - gap / 2), square(x + gap / 2)])
+        found = pk.find_shapes(seen_on(world), rng=0)
+        assert pk.evaluate(found, world).weighted_accuracy == 1.0 or not any(one.certain for one in found)
+
+
+def test_no_beam_gets_inside():
+    """A few points deep inside a rectangle: it may be two things."""
+    points = pk.Polygon([(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (-0.1, 0.05)]).outline(300)
+    (one,) = pk.find_shapes(points, rng=0)
+    assert one.certain
+    (one,) = pk.find_shapes(np.vstack([points, [(0.0, 0.045)]]), rng=0)
+    assert not one.certain
+
+
+@pytest.mark.parametrize("thick", [0.003, 0.006, 0.01, 0.015])
+def test_a_plank_is_a_wall_or_a_rectangle(thick):
+    plank = pk.Polygon([(-0.1, 0), (0.1, 0), (0.1, thick), (-0.1, thick)]).moved((0.03, 0.01), 0.4)
+    found = pk.find_shapes(seen_on(pk.World([plank])), rng=0)
+    (length,) = [wall.length for wall in found.walls] or [one.shape.dimensions[0] for one in found]
+    assert length == pytest.approx(0.2, abs=0.005)

@@ -20,10 +20,11 @@ from .deviations import Certainty, certainty
 from .evidence import Candidate
 from .lack_of_fit import lack_of_fit
 from .outlines import LEAST_SIDE
-from .scatter import SIGMAS, noise_of
+from .scatter import CELL, SIGMAS, noise_of
 
 CERTAIN = 10.0  # a margin of so much is very strong evidence (Kass and Raftery, 1995)
 MOST_ON_IT = 0.9  # share of the points; more off it may be something else
+DEEP_CELLS, DEEP_NOISE = 1.7, 5.0  # inside: farther than cells and noise, times its deviation, bring a point
 MOST_SEEN = 0.75  # share of each side; behind more there may be something else
 
 
@@ -74,6 +75,11 @@ class Choice:
         return np.abs(self.distance) <= SIGMAS * self.spread
 
     @cached_property
+    def inside(self) -> NDArray[np.bool_]:
+        """Which points lie deep inside the chosen shape, shape (N,): no beam gets there, unless it is two."""
+        return self.distance < -(DEEP_CELLS * CELL + DEEP_NOISE * noise_of(self.spread))
+
+    @cached_property
     def sure(self) -> Certainty:
         """How sure the numbers of the chosen shape are; nothing without a shape."""
         best = self.ranked[0] if self.ranked else None
@@ -111,8 +117,8 @@ class Choice:
     def certain(self) -> bool:
         """Whether what it is, is beyond doubt.
 
-        Its margin says so (at a glance, the bounds of all others did); nearly all points lie on it, and nearly all of
-        it was seen; and it is so large that its kind can show.
+        Its margin says so (at a glance, the bounds of all others did); nearly all points lie on it, none deep inside;
+        nearly all of it was seen; it is so large that its kind can show.
         """
         best = self.ranked[0] if self.ranked else None
         if best is None or best.shape is None:
@@ -122,6 +128,7 @@ class Choice:
         return bool(
             margin >= CERTAIN
             and self.on_it.mean() >= MOST_ON_IT
+            and not self.inside.any()
             and min(best.seen) >= MOST_SEEN
             and large >= LEAST_SIDE
         )

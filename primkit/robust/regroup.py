@@ -28,6 +28,7 @@ from itertools import combinations
 import numpy as np
 
 from ..arguments import Floats
+from ..lines import fit_line
 from ..seen import seen_shares
 from ..segmentation import LEAST_GROUP, kmeans
 from ..shapes import Polygon, Shape
@@ -206,13 +207,25 @@ def _gain(parts: tuple[Group, ...], group: Group) -> float:
 
 
 def _halves(group: Group, spread: float, n_shapes: int | None, explain: Explain) -> tuple[Group, ...]:
-    """Return a group as two, cut by K-Means; nothing when it is too small, or well explained as it is."""
+    """Return a group as two; nothing when it is too small, or well explained as it is.
+
+    It is cut by K-Means, or along the points inside it, which were seen through the mouth between two shapes.
+    """
     if not group.ranked or len(group.points) < 2 * LEAST_GROUP:
         return ()
-    if n_shapes is None and _share_on_shape(group, spread) >= WELL_EXPLAINED:
+    inside = group.points[group.choice.inside]
+    plain = len(inside) == 0 and group.ranked[0].kind != "polygon"
+    if n_shapes is None and plain and _share_on_shape(group, spread) >= WELL_EXPLAINED:
         return ()
-    labels = kmeans(group.points, 2, rng=0)
-    return tuple(explain(group.points[labels == label]) for label in (0, 1))
+    sides = [kmeans(group.points, 2, rng=0) > 0]
+    if (mouth := fit_line(inside)) is not None:
+        sides.append(mouth.signed_distance(group.points) > 0)
+    ways = [
+        tuple(explain(group.points[side == one]) for one in (False, True))
+        for side in sides
+        if LEAST_GROUP <= np.count_nonzero(side) <= len(side) - LEAST_GROUP
+    ]
+    return min(ways, key=cost_of, default=())
 
 
 def _share_on_shape(group: Group, spread: float) -> float:
