@@ -252,7 +252,10 @@ def test_study_repeats_the_paper(capsys, monkeypatch, tmp_path):
     monkeypatch.setattr(repeat, "published_suite", lambda: {"1_quadrado": suite["1_quadrado"]})
     assert main(["study", "--rows", "--movement", "both", "--settings", "paper", "--jobs", "1"]) == 0
     out, _ = capsys.readouterr()
-    assert "\nrectangle, 1 map\n recorded           0.850  1.000  1.000   0.500       9.48\n PAPER repeated     0.850" in out
+    assert (
+        "\nrectangle, 1 map\n recorded           0.850  1.000  1.000   0.500       9.48\n PAPER repeated     0.850"
+        in out
+    )
     assert "1_quadrado, automatic  0.85 1.00 1.00 0.50  0.85 1.00 1.00 0.50  the same" in out
     assert "The same as recorded in all four numbers: 1 of 1 rows." in out
     assert "four keys" in out
