@@ -50,6 +50,12 @@ def test_the_sum_of_all_is_the_input(points, settings):
     np.testing.assert_array_equal(in_order(accounted(found)), in_order(points))
 
 
+def test_points_at_one_place_share_their_fate():
+    found = pk.find_shapes(clouds()["equal points"], rng=0)
+    assert [len(one.points) for one in found] == [180]
+    assert len(found.strays) == 0
+
+
 def test_on_a_board_without_noise_nothing_is_left():
     for seed in range(4):
         grid = seen_on(pk.random_world(4, style="free", rng=seed))
