@@ -30,8 +30,7 @@ from .shapes import Circle
 
 Method = Literal["kasa", "pratt", "taubin", "geometric"]
 
-# Points whose circle is more than this many times wider than they are spread lie on a line, as far as one can tell.
-FLAT = 1e4
+FLAT = 1e4  # points whose circle is more times wider than they are spread lie on a line, as far as one can tell
 GRAZING, MOST_GRAZING = 6.0, 30.0  # how much grazing beams shrink an arc: see ``straightened``
 FINEST = 1e-12  # keeps what is divided by above zero
 GAUSS_NEWTON_STEPS = 50  # Gauss-Newton settles within five steps at 1 % noise, within some fifteen at 10 %
@@ -92,14 +91,9 @@ def find_circle(
 
     Parameters
     ----------
-    points : array_like, shape (N, 2), metres
-    threshold : float
-        A point agrees when it is at most this far from the circle, in metres.
-    trials : int, random samples
-    refit : bool
-        Fit the circle to its inliers; without it the circle goes through three of the points, as in the
-        PyRANSAC library that the paper uses.
-    rng : seed or numpy.random.Generator, optional
+    points, threshold, trials, refit, rng
+        As for ``run_ransac``. Without ``refit`` the circle goes through three of the points, as in the PyRANSAC library
+        that the paper uses.
 
     Examples
     --------

@@ -28,10 +28,8 @@ from .lidar import Scans
 from .show import thumbnail
 from .table import count
 
-# 0.043 / 0.001 is 42.99999999999999 and must be cell 43: a point this close (in cells) below a border is on it.
-ON_BORDER = 1e-9
-# Cells are packed into one whole number, 31 bits each way: a board of 1 mm cells up to 2,000 km wide.
-HALF = 1 << 30
+ON_BORDER = 1e-9  # cells: so close below a border a point is on it; 0.043 / 0.001 is 42.99999999999999
+HALF = 1 << 30  # cells are packed into one whole number, 31 bits each way: boards of 1 mm cells up to 2,000 km wide
 ADDING = Lock()  # one for all grids, so that a grid can be copied: several threads may add at once
 
 

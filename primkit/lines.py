@@ -96,17 +96,12 @@ def find_lines(
 
     Parameters
     ----------
-    points : array_like, shape (N, 2), metres
-    threshold : float
-        A point lies on a line when it is at most this far from it, in metres.
+    points, threshold, trials, refit, rng
+        As for ``run_ransac``, for each line.
     left_over, most
         Stop when at most this share of the points is left, or after this many lines.
-    trials : int, random samples for each line
-    refit : bool
-        Fit each line to its inliers by least squares.
     model : Model, optional
         The line with a fit of your own; ``LINE`` by default.
-    rng : seed or numpy.random.Generator, optional
 
     Examples
     --------

@@ -27,8 +27,7 @@ from .arguments import ROUNDING, Floats, Labels, as_count, as_points, as_positiv
 
 Grouping = Literal["kmeans", "link"]
 
-# Neighbours on an outline lie a few cells apart, 20 where only distant poses saw it; shapes lie farther.
-LINK_CELLS = 22
+LINK_CELLS = 22  # neighbours on an outline lie a few cells apart, 20 where only distant poses saw it; shapes farther
 LINK = 0.022  # m: the same on cells of 1 mm
 LINK_NEIGHBOURS = 4  # a point joins others when so many, itself included, lie within a link: strays do not
 LEAST_GROUP = 8  # a smaller group is a handful of strays

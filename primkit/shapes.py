@@ -30,12 +30,9 @@ Kind = Literal["circle", "triangle", "rectangle", "pentagon", "polygon"]
 KINDS: tuple[Kind, ...] = ("circle", "triangle", "rectangle", "pentagon", "polygon")
 PRIMITIVES = KINDS[:4]  # the paper's; "polygon" is any other outline of straight sides
 
-# Corners closer than a nanometre are one corner: far below the 1 mm grid, far above rounding (1e-16 m).
-SAME_CORNER = 1e-9
-# A corner that bends the outline by less than this (in radians) is no corner: the sides are one side.
-STRAIGHT = 1e-9
-# Four corners within this of 90 degrees make a rectangle: no better do points of a short side tell its direction.
-NEARLY_RIGHT = np.radians(2)
+SAME_CORNER = 1e-9  # m: nearer corners are one; far below the 1 mm grid, far above rounding (1e-16 m)
+STRAIGHT = 1e-9  # rad: a corner that bends the outline by less is none
+NEARLY_RIGHT = np.radians(2)  # of 90 degrees: points of a short side tell its direction no better
 SHOWN_CORNERS = 6  # a polygon with more is printed with its first three
 
 

@@ -187,8 +187,7 @@ line_through = Check(
             like=lambda p, q: through(p, q) and _along(p, q),
         ),
         Fault(
-            "The offset has a sign: it belongs to the normal that you return.",
-            like=_through(lambda a, d: (a, abs(d))),
+            "The offset has a sign: it belongs to the normal that you return.", like=_through(lambda a, d: (a, abs(d)))
         ),
         Fault(
             "The line lies on the other side of the origin: is the sign of n . p right?",

@@ -39,8 +39,7 @@ from .files import LINE_LIMIT, StrPath, append_whole, as_path, bounded_read, lin
 from .values import check_format, numbers_in, parsed
 
 DRIVE_ENDINGS = (".jsonl",)
-# Most of an hour with ten scans of 100 beams a second if all of them hit something, several hours otherwise.
-DRIVE_LIMIT = 64 * 2**20
+DRIVE_LIMIT = 64 * 2**20  # bytes: most of an hour with ten scans of 100 beams a second if all of them hit something
 DRIVE_FORMAT, DRIVE_VERSION = "primkit drive", 1
 
 

@@ -112,10 +112,8 @@ def plot_tour(world: World, tour: Exploration, ax: Axes | None = None, *, title:
         The truth.
     tour : Exploration
         What ``explore`` returned.
-    ax : Axes, optional
-        Where to draw.
-    title : str, optional
-        What to say above it; what there is to see when not given, nothing when empty.
+    ax, title : optional
+        As for ``plot_world``.
     """
     check_type(world, World, "world must be of type World")
     check_type(tour, Exploration, "tour must be of type Exploration")
@@ -145,10 +143,8 @@ def plot_change(
         The truth as it was (dashed) and as it is (filled).
     points : array_like, shape (N, 2)
         The grid's points, metres; those more than 4 mm from every outline that is there now are ghosts.
-    ax : Axes, optional
-        Where to draw.
-    title : str, optional
-        What to say above it; what there is to see when not given, nothing when empty.
+    ax, title : optional
+        As for ``plot_world``.
     """
     check_type(before, World, "before must be of type World")
     check_type(after, World, "after must be of type World")

@@ -29,17 +29,7 @@ from ..shapes import Circle, Polygon, Shape
 from ..table import count
 from ..world import World
 from .labels import write_labels
-from .look import (
-    as_axes,
-    check_look,
-    draw_areas,
-    draw_board,
-    draw_center,
-    draw_legend,
-    marks,
-    outlines,
-    set_title,
-)
+from .look import as_axes, check_look, draw_areas, draw_board, draw_center, draw_legend, marks, outlines, set_title
 
 DASHES = (0, (3, 2))
 
@@ -63,13 +53,11 @@ def plot_found(
         What was found. Stretches of a detection's outline that no point lies near are dashed.
     world : World, optional
         The truth, drawn as light areas; that of the report when not given.
-    ax : Axes, optional
-        Where to draw.
     report : Report, optional
         The comparison of these shapes with the truth: each label then states the largest error of the centre
         and of the dimensions, and what was missed or is a false alarm is named.
-    title : str, optional
-        What to say above it; what there is to see when not given, nothing when empty.
+    ax, title : optional
+        As for ``plot_world``.
     color : color, optional
         Of all outlines that were found; of each kind its own when not given.
 

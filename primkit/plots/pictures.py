@@ -58,7 +58,6 @@ def plot_world(
     world : World
         The truth.
     ax : Axes, optional
-        Where to draw.
     title : str, optional
         What to say above it; what there is to see when not given, nothing when empty.
     color : color, optional
@@ -105,12 +104,10 @@ def plot_scan(
         What the LiDAR saw.
     index : int
         Which of the scans, from 0.
-    ax : Axes, optional
-        Where to draw.
     lidar : Lidar, optional
         The sensor whose range is drawn; the paper's by default.
-    title : str, optional
-        What to say above it; what there is to see when not given, nothing when empty.
+    ax, title : optional
+        As for ``plot_world``.
     color : color, optional
         Of the beams that hit; orange when not given.
 
@@ -180,12 +177,10 @@ def plot_points(
     Parameters
     ----------
     points : array_like, shape (N, 2), metres
-    ax : Axes, optional
-        Where to draw.
     size : float
         Side of the board in metres.
-    title : str, optional
-        What to say above it; what there is to see when not given, nothing when empty.
+    ax, title : optional
+        As for ``plot_world``.
     color : color, optional
         Of the points; black when not given.
 
@@ -216,12 +211,10 @@ def plot_clusters(
     points : array_like, shape (N, 2), metres
     labels : array_like of int, shape (N,)
         Which cluster each point belongs to, from 0; -1 for strays, which become grey crosses.
-    ax : Axes, optional
-        Where to draw.
     size : float
         Side of the board in metres.
-    title : str, optional
-        What to say above it; what there is to see when not given, nothing when empty.
+    ax, title : optional
+        As for ``plot_world``.
 
     Examples
     --------

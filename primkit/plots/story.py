@@ -45,12 +45,7 @@ def plain() -> AbstractContextManager[None]:
 
 
 def plot_story(
-    world: World,
-    scans: Scans,
-    points: ArrayLike,
-    labels: ArrayLike,
-    found: Iterable[Detection | Shape],
-    report: Report,
+    world: World, scans: Scans, points: ArrayLike, labels: ArrayLike, found: Iterable[Detection | Shape], report: Report
 ) -> Figure:
     """Return one figure with the whole story: a scan, the points, the clusters, and the shapes with their errors.
 

@@ -19,8 +19,7 @@ from ..arguments import Floats, Ints
 from .near import runs
 
 TURN = 2 * np.pi
-# A beam this close [rad] beside a corner still hits it: otherwise rounding could let it slip between two sides.
-CORNER_HIT = 1e-12
+CORNER_HIT = 1e-12  # rad: so close beside a corner a beam hits it, or rounding could let it slip between two sides
 
 
 class Fan:

@@ -214,14 +214,8 @@ def _bars(found: tuple[Fitted, ...], misfits: Floats, prices: Floats, best: int)
     floor = BARS.y[0]
     parts = [BARS.area([(-0.2, floor), (0.2, floor), (0.2, -0.138), (-0.2, -0.138)], "#FFFFFF", 1.0)]
     parts.append(BARS.segments([(-0.2, -0.138)], [(0.2, -0.138)], PALE))
-    parts += [
-        BARS.text((-0.195, -0.158), "cost [-] =", INK),
-        BARS.points([(-0.108, -0.155)], BLUE, "square", 10),
-    ]
-    parts += [
-        BARS.text((-0.098, -0.158), "misfit +", INK),
-        BARS.points([(-0.033, -0.155)], ORANGE, "diamond", 9),
-    ]
+    parts += [BARS.text((-0.195, -0.158), "cost [-] =", INK), BARS.points([(-0.108, -0.155)], BLUE, "square", 10)]
+    parts += [BARS.text((-0.098, -0.158), "misfit +", INK), BARS.points([(-0.033, -0.155)], ORANGE, "diamond", 9)]
     parts += [BARS.text((-0.023, -0.158), "price of its numbers", INK)]
     for row, (one, misfit, price) in enumerate(zip(found, misfits.tolist(), prices.tolist(), strict=True)):
         y = FIRST_BAR - BAR_ROW * row
