@@ -188,6 +188,7 @@ def find_shapes(
         found += _as_published(together, settings, steps, measure_rng)
     else:
         memory = {} if memory is None else memory
+        together = [points for points in together if not account.by_chance(points)]  # strays, not to be explained
         groups, margins = _jointly(together, n_shapes, settings, kinds, memory, measure_rng)
         for group, margin in zip(groups, margins, strict=True):
             for thing in things_of(group.choice, margin, account):
