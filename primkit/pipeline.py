@@ -16,7 +16,7 @@ any rotation, and lets the likelihood decide between circle and polygon.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from typing import Literal
@@ -33,10 +33,13 @@ from .paper import CIRCLE_TRIALS, LINE_TRIALS, ON_LINE, one_start_kmeans, shape_
 from .robust.regroup import Group, explained, grown, regrouped
 from .robust.scatter import LEAST_SPREAD, SIGMAS, spread_across, spread_from_median, spread_of
 from .segmentation import Grouping, check_count, count_by_silhouette, segment
+from .shapes import KINDS, Kind
 from .steps import Steps
 from .table import Table
 
-Memory = dict[tuple[bytes, float, int, bool, bool], Group]  # groups as they were measured last, by their points
+Memory = dict[
+    tuple[bytes, float, int, bool, bool, tuple[str, ...]], Group
+]  # groups as they were measured last, by their points
 
 SAME_SPREAD = 1.25  # fits are done anew when the spread comes out farther than this from what was supposed
 SPREAD_ROUNDS = 2  # from the neighbours' estimate, a third low at most, two rounds get there
@@ -111,6 +114,7 @@ def find_shapes(
     resolution: float | None = None,
     settings: Settings = ROBUST,
     steps: Steps | None = None,
+    kinds: Sequence[Kind] | None = None,
     memory: Memory | None = None,
     rng: int | np.random.Generator | None = None,
 ) -> Found:
@@ -130,6 +134,9 @@ def find_shapes(
         ``ROBUST`` or ``PAPER``, or your own.
     steps : Steps, optional
         Functions of your own in the place of steps: ``Steps(segment=..., fit_line=..., fit_circle=...)``.
+    kinds : sequence of str
+        What can be there, if that is known beforehand: some of ``"circle"``, ``"triangle"``, ``"rectangle"``,
+        ``"pentagon"`` and ``"polygon"``. ``PAPER`` has no use for it.
     memory : dict, optional
         For mapping while driving: hand in the same dictionary, empty at first, with every call, and the same
         seed as ``rng``. Groups whose points have not changed since the last call are not measured again, and those
@@ -147,7 +154,8 @@ def find_shapes(
     ------
     ValueError
         If points are not finite (N, 2), or more shapes are asked for than there are different points; if a resolution
-        is given that is not above zero, or with a grid; or if a step of your own returns what it should not.
+        is given that is not above zero, or with a grid; if a kind is none of the kinds; or if a step of your own
+        returns what it should not.
 
     Examples
     --------
@@ -157,6 +165,7 @@ def find_shapes(
     check_type(settings, Settings, "settings must be ROBUST, PAPER or Settings of your own")
     steps = Steps() if steps is None else steps
     check_type(steps, Steps, "steps must be Steps, such as Steps(fit_circle=mine)")
+    kinds = _known(kinds)
     points, resolution = _points_on_cells(points, resolution)
     if n_shapes is not None:
         check_count(n_shapes, points)
@@ -179,12 +188,24 @@ def find_shapes(
         found += _as_published(together, settings, steps, measure_rng)
     else:
         memory = {} if memory is None else memory
-        groups, margins = _jointly(together, n_shapes, settings, memory, measure_rng)
+        together = [points for points in together if not account.by_chance(points)]  # strays, not to be explained
+        groups, margins = _jointly(together, n_shapes, settings, kinds, memory, measure_rng)
         for group, margin in zip(groups, margins, strict=True):
             for thing in things_of(group.choice, margin, account):
                 own = steps.remeasured(thing, SIGMAS * group.spread) if isinstance(thing, Detection) else thing
                 found += [] if own is None else [own]
     return account.closed(found)
+
+
+def _known(kinds: Sequence[Kind] | Kind | None) -> tuple[Kind, ...]:
+    """Return the kinds that can be there, all where none are told; or refuse what is none."""
+    if kinds is None:
+        return KINDS
+    names: tuple[Kind, ...] = (kinds,) if isinstance(kinds, str) else tuple(kinds)
+    strange = [name for name in names if name not in KINDS]
+    if strange or not names:
+        raise ValueError(f"kinds must be some of {', '.join(KINDS)}, got {short(strange[0] if strange else kinds)}")
+    return names
 
 
 def _points_on_cells(points: Grid | ArrayLike, resolution: float | None) -> tuple[Floats, float]:
@@ -207,26 +228,28 @@ def _jointly(
     together: list[Floats],
     n_shapes: int | None,
     settings: Settings,
+    kinds: tuple[Kind, ...],
     memory: Memory,
     rng: np.random.Generator,
 ) -> tuple[list[Group], list[float]]:
     """Explain each group, and ask for a second opinion on the groups: the default way."""
     seed = int(rng.integers(2**63))
+    how = (seed, settings.soft, settings.thorough, kinds)
     used: Memory = {}
 
     def explain(points: Floats, spread: float) -> Group:
-        key = (points.tobytes(), spread, seed, settings.soft, settings.thorough)
+        key = (points.tobytes(), spread, *how)
         if key not in used:
             used[key] = memory[key] if key in memory else remembered(points, spread)
         return used[key]
 
     def remembered(points: Floats, spread: float) -> Group:
-        alike = (old for (_, *how), old in memory.items() if how == [spread, seed, settings.soft, settings.thorough])
+        alike = (old for (_, *before), old in memory.items() if before == [spread, *how])
         again = (grown(old, points, spread, soft=settings.soft) for old in alike)
         group = next((group for group in again if group is not None), None)
         if group is not None:
             return group
-        return explained(points, spread, seed, soft=settings.soft, thorough=settings.thorough)
+        return explained(points, spread, seed, soft=settings.soft, thorough=settings.thorough, kinds=kinds)
 
     last = next((group.spread for group in reversed(memory.values())), None)  # as the last fits left it
     groups, spread = _explain_all(together, settings, last, explain)

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 import primkit as pk
-from primkit.robust.free import free_outline, path_through
+from primkit.robust.free import _pruned, free_outline, path_through
 from primkit.robust.lack_of_fit import lack_of_fit, sharpness
 from primkit.robust.outlines import Outlines
 from primkit.robust.scatter import LEAST_SPREAD, spread_across
+from tests.helpers import exactly
 
 
 def regular(k, radius, inner=None):
@@ -97,6 +98,13 @@ def test_the_four_kinds_are_certain(noise):
     assert np.mean(certain) >= 0.95
 
 
+def test_cells_that_round_a_whole_side_alike_are_no_bends():
+    """On this board a side runs nearly along the cells, whose rounding then repeats itself over many points."""
+    world, grid = pk.random_world(4, style="free", rng=6120), pk.Grid()
+    grid.add(pk.scan(world, pk.teleport_poses(world), pk.Lidar(), rng=6120))
+    assert all(one.certain for one in pk.find_shapes(grid, rng=0))
+
+
 def test_the_paper_is_never_certain():
     ring = pk.Circle((0, 0), 0.06).outline(150)
     (one,) = pk.find_shapes(ring, 1, settings=pk.PAPER, rng=0)
@@ -106,6 +114,7 @@ def test_the_paper_is_never_certain():
 SMALL = {
     "a square of 8 mm": pk.Polygon([(0, 0), (0.008, 0), (0.008, 0.008), (0, 0.008)]).outline(32),
     "a pentagon of radius 8 mm": pk.Polygon(regular(5, 0.008)).outline(40),
+    "a circle of radius 12 mm": pk.Circle((0, 0), 0.012).outline(90),
     "strays within 3 mm": np.random.default_rng(0).uniform(-0.003, 0.003, (10, 2)),
 }
 
@@ -146,6 +155,15 @@ def test_what_is_open_or_nearly_nothing_has_no_outline(k):
     assert free_outline([line, line[:3], line[:0]][k].reshape(-1, 2), LEAST_SPREAD) is None
 
 
+def test_a_piece_that_is_not_worth_its_price_is_left_out():
+    """One side of the hexagon, broken in two by hand, is one again."""
+    hexagon = pk.Polygon(regular(6, 0.09))
+    whole = outline_of(hexagon)
+    turned = np.append(whole.angles, whole.angles[:, -1:] + 0.15, axis=1)
+    broken = Outlines(turned, np.append(whole.offsets, whole.offsets[:, -1:] * 1.001, axis=1))
+    assert _pruned(hexagon.outline(300), broken, LEAST_SPREAD, 0.005).angles.shape == (1, 6)
+
+
 def outline_of(polygon):
     normals = polygon.normals
     offsets = (normals * polygon.vertices).sum(axis=1)
@@ -182,3 +200,39 @@ def test_a_polygon_that_is_not_convex_has_its_distances():
     assert outline_of(ell).kind == "polygon"
     assert outline_of(ell).closes(0.01)[0]
     assert not outline_of(ell).sound()[0]
+
+
+# --- what can be there, known beforehand -------------------------------------------------------------------------
+
+
+def test_poles_are_found_where_only_poles_can_be():
+    """Radius 55 mm and noise of 18 mm, as a real scanner sees them: without that knowledge, nothing is certain."""
+    rng = np.random.default_rng(3)
+    poles = [pk.Circle((x, y), 0.055) for x in (-0.3, 0.3) for y in (-0.3, 0.0, 0.3)]
+    points = []
+    for pole in poles:
+        ring = pole.outline(220)
+        points.append(ring + (ring - pole.center) / pole.radius * rng.normal(0, 0.018, (220, 1)))
+    points = np.vstack(points)
+    assert not any(one.certain and one.kind != "circle" for one in pk.find_shapes(points, rng=0))
+    found = pk.find_shapes(points, kinds=("circle",), rng=0)
+    assert [one.kind for one in found] == ["circle"] * 6
+    for pole in poles:
+        nearest = min(found, key=lambda one, pole=pole: np.hypot(*(one.shape.center - pole.center)))
+        assert np.hypot(*(nearest.shape.center - pole.center)) < 0.01
+
+
+def test_kinds_that_cannot_be_are_no_explanation():
+    square = pk.Polygon([(0, 0), (0.1, 0), (0.1, 0.1), (0, 0.1)]).outline(300)
+    assert [one.kind for one in pk.find_shapes(square, kinds=("rectangle", "circle"), rng=0)] == ["rectangle"]
+    for kinds in (("circle",), ("triangle",)):
+        found = pk.find_shapes(square, kinds=kinds, rng=0)
+        assert {one.kind for one in found} <= set(kinds)
+        assert not any(one.certain for one in found)
+
+
+@pytest.mark.parametrize(("kinds", "got"), [(("hexagon",), "'hexagon'"), ((), "()"), ("square", "'square'")])
+def test_a_kind_is_one_of_the_kinds(kinds, got):
+    message = f"kinds must be some of circle, triangle, rectangle, pentagon, polygon, got {got}"
+    with pytest.raises(ValueError, match=exactly(message)):
+        pk.find_shapes([(0, 0)], kinds=kinds)

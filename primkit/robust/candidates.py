@@ -21,7 +21,7 @@ from ..arguments import Floats, as_rng
 from ..circles import find_circle, nearer_circle
 from ..lines import Line
 from ..seen import REACH
-from ..shapes import Circle
+from ..shapes import KINDS, Circle
 from .evidence import Candidate, judged, judged_wall
 from .free import free_outline
 from .guess import guess_outlines, guess_rectangles, line_guesses, one_side_more, ransac_lines
@@ -47,7 +47,12 @@ FITS, NEARLY_ALL = 10.0, 0.9  # lack of fit down to which a shape fits; share of
 
 
 def candidates(
-    points: Floats, spread: float, *, soft: bool = True, rng: int | np.random.Generator | None = None
+    points: Floats,
+    spread: float,
+    *,
+    soft: bool = True,
+    rng: int | np.random.Generator | None = None,
+    kinds: Sequence[str] = KINDS,
 ) -> list[Candidate]:
     """Return every explanation of a cluster's points, the best first.
 
@@ -61,6 +66,8 @@ def candidates(
         Share points between sides in the last polish, as ``refine.refine_soft`` does.
     rng : int or numpy.random.Generator, optional
         Seed or generator.
+    kinds : sequence of str
+        The kinds that can be there.
 
     Returns
     -------
@@ -73,7 +80,9 @@ def candidates(
         return []
     middle = points.mean(axis=0)
     local = points - middle  # digits are not lost far from the origin
-    waiting = sorted(_rough(local, spread, as_rng(rng)), key=lambda c: c.cost)
+    possible = ("wall", *kinds)
+    rough = [c for c in _rough(local, spread, as_rng(rng)) if c.kind in possible]
+    waiting = sorted(rough, key=lambda c: c.cost)
     done: list[Candidate] = []
     while waiting and waiting[0].cost <= min((c.cost for c in done), default=np.inf) + CONTENDER:
         polished = _polished(local, waiting.pop(0), spread, soft)
@@ -81,7 +90,7 @@ def candidates(
     ranked = sorted(done + waiting, key=lambda c: c.cost)
     if ranked and not _fits(local, ranked[0], spread):
         ranked = sorted([*ranked, *_free(local, spread)], key=lambda c: c.cost)
-    return [moved(c, middle) for c in ranked]
+    return [moved(c, middle) for c in ranked if c.kind in possible]
 
 
 def explained_again(

@@ -6,6 +6,7 @@ Out: ``Choice``: the shape, the points that lie on it, its standard deviations, 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..arguments import Floats
 from ..circles import straightened
-from ..shapes import Circle, Shape
+from ..shapes import KINDS, Circle, Shape
 from .candidates import candidates, free_candidate
 from .deviations import Certainty, certainty
 from .evidence import Candidate
@@ -46,6 +47,8 @@ class Choice:
         Whether points were shared between sides.
     at_a_glance : bool
         Whether the best explanation was beyond doubt, and its rivals were not fitted.
+    kinds : sequence of str
+        The kinds that can be there; others are no rivals.
     """
 
     points: Floats
@@ -54,6 +57,7 @@ class Choice:
     seed: int | None = None
     soft: bool = True
     at_a_glance: bool = False
+    kinds: Sequence[str] = KINDS
 
     @cached_property
     def shape(self) -> Shape | None:
@@ -100,6 +104,7 @@ class Choice:
         if self.at_a_glance:
             rivals = candidates(self.points, self.spread, soft=self.soft, rng=self.seed)
         rivals = [*rivals, *free_candidate(self.points, self.spread)]
+        rivals = [rival for rival in rivals if rival.kind in ("wall", *self.kinds)]
         others = [rival.cost - rival.nameless / 2 for rival in rivals if rival.kind != best.kind]
         margin = min(others, default=float("inf")) - best.cost
         return margin if self.fit >= CERTAIN else min(margin, self.fit)

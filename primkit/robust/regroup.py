@@ -31,7 +31,7 @@ from ..arguments import Floats
 from ..lines import fit_line
 from ..seen import seen_shares
 from ..segmentation import LEAST_GROUP, kmeans
-from ..shapes import Polygon, Shape
+from ..shapes import KINDS, Polygon, Shape
 from .candidates import candidates, explained_again
 from .choice import Choice
 from .evidence import Candidate, joint_cost
@@ -91,14 +91,24 @@ def cost_of(groups: Sequence[Group]) -> float:
     return joint_cost([g.ranked[0] for g in groups if g.ranked]) - 2 * strays * float(np.log(NOWHERE))
 
 
-def explained(points: Floats, spread: float, seed: int = 0, *, soft: bool = True, thorough: bool = True) -> Group:
+def explained(
+    points: Floats,
+    spread: float,
+    seed: int = 0,
+    *,
+    soft: bool = True,
+    thorough: bool = True,
+    kinds: Sequence[str] = KINDS,
+) -> Group:
     """Return the points with all their explanations; or, if not to be thorough, with one that a glance is sure of.
 
+    Walls, and those of the kinds that can be there, are explanations.
     Every group is measured with the same seed, so that a group's result does not depend on the others.
     """
     best = None if thorough else at_a_glance(points, spread, soft=soft)
-    ranked = candidates(points, spread, soft=soft, rng=seed) if best is None else [best]
-    return Group(points, ranked, spread, len(points), Choice(points, ranked, spread, seed, soft, best is not None))
+    glance = best is not None and best.kind in kinds
+    ranked = [best] if best is not None and glance else candidates(points, spread, soft=soft, rng=seed, kinds=kinds)
+    return Group(points, ranked, spread, len(points), Choice(points, ranked, spread, seed, soft, glance, kinds))
 
 
 def grown(old: Group, points: Floats, spread: float, *, soft: bool = True) -> Group | None:
