@@ -32,7 +32,7 @@ TEXT = "Map circles, triangles, rectangles and pentagons with a simulated robot 
 EXAMPLES = """\
 examples:
   primkit map                            a random board with four shapes, into out/
-  primkit study                          the paper's Tables 1 and 2 beside ours
+  primkit study                          repeat the paper's Tables 1 and 2
   primkit make-map --shapes 6 --style free --out room.geojson
   primkit map --map room.geojson         a board of your own
 """

@@ -10,7 +10,8 @@ the nearest texel of their pictures, though it passes beside the middle of it. T
 
 t is the way along m to the nearest side that faces the robot: back faces are not drawn, so that from inside a shape
 the others are seen. A circle is drawn as a cylinder with 36 faces. Neither z nor r is told below the sensor's least
-range, nor from its greatest on. The error, of millimetres, is always the same: there is no noise in it.
+range, nor from its greatest on. The error, of millimetres, is always the same, and neighbours err alike. Who supposes
+independent errors is too sure: 95 % intervals of ``ROBUST`` hold 94 % of the centres, and 88 % of the dimensions.
 
 In:  a ``World``; poses, shape (P, 3): x [m], y [m], heading [rad]; the beams' bearings, shape (B,); limits in metres.
 Out: ranges, shape (P, B), metres; ``inf`` where there is none.
@@ -21,7 +22,7 @@ Out: ranges, shape (P, B), metres; ``inf`` where there is none.
 >>> ranges[0, 50:54].round(4).tolist()  # exact: 0.1503, 0.1528, 0.1585, 0.1707
 [0.1505, 0.1529, 0.1584, 0.1699]
 
-Source: read from the sources of Webots (cyberbotics/webots, R2023b), and held against the points that its paper shows.
+Source: the sources of Webots (cyberbotics/webots), though not of the very release; the paper's Figure 3 agrees to 3 mm.
 """
 
 from __future__ import annotations

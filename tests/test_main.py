@@ -16,7 +16,7 @@ import primkit.study
 from primkit.__main__ import main
 from primkit.formats import load_world, save_world
 from primkit.shapes import Circle, Polygon
-from primkit.study import JOURNAL
+from primkit.study import JOURNAL, repeat
 from primkit.world import World, random_world
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -244,6 +244,24 @@ def test_study_prints_tables_and_writes_them(capsys):
         ["two", "ROBUST"],
     ]
     assert (out.isascii(), err) == (True, "")
+
+
+def test_study_repeats_the_paper(capsys, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    suite = repeat.published_suite()
+    monkeypatch.setattr(repeat, "published_suite", lambda: {"1_quadrado": suite["1_quadrado"]})
+    assert main(["study", "--rows", "--movement", "both", "--settings", "paper", "--jobs", "1"]) == 0
+    out, _ = capsys.readouterr()
+    assert (
+        "\nrectangle, 1 map\n recorded           0.850  1.000  1.000   0.500       9.48\n PAPER repeated     0.850"
+        in out
+    )
+    assert "1_quadrado, automatic  0.85 1.00 1.00 0.50  0.85 1.00 1.00 0.50  the same" in out
+    assert "The same as recorded in all four numbers: 1 of 1 rows." in out
+    assert "four keys" in out
+    assert sorted(path.name for path in Path("out").iterdir()) == [
+        *("journal.jsonl", "row-by-row.csv", "rows.csv", "seen.csv", "table-1.csv", "table-3.csv")
+    ]
 
 
 @pytest.mark.usefixtures("maps")

@@ -301,11 +301,16 @@ def test_every_length_follows_the_cell(resolution):
     assert large.dimensions == pytest.approx(tuple(1000 * resolution * size for size in small.dimensions))
 
 
-def test_a_search_ends_when_no_better_line_is_to_be_expected():
-    """Half of the points on one line: 125 samples are enough, whatever else was allowed."""
-    points = np.vstack([np.column_stack([np.arange(0, 600, 10), np.zeros(60)]), frame(500, 400)[:60] * 1000 + 900])
-    drawn = [paper._on_best_line(points, trials, np.random.default_rng(0)) for trials in (500, 10_000)]
-    assert drawn[0].sum() == drawn[1].sum() == 60
+@pytest.mark.parametrize(("on_it", "looks"), [(60, 1), (4, 20)], ids=["half of the points", "hardly any"])
+def test_a_search_ends_when_no_better_line_is_to_be_expected(on_it, looks, monkeypatch):
+    """With half of the points on a line 125 samples are enough; with a thirtieth, all 10,000 are looked at, by 500."""
+    asked, enough = [], paper._enough_trials
+    monkeypatch.setattr(paper, "_enough_trials", lambda share: asked.append(len(share)) or enough(share))
+    line = np.column_stack([40 * np.arange(on_it), np.zeros(on_it)])
+    others = 1000 + np.random.default_rng(0).uniform(0, 100_000, (120 - on_it, 2))
+    near = paper._on_best_line(np.vstack([line, others]), 10_000, np.random.default_rng(0))
+    assert near[:on_it].all()
+    assert len(asked) == looks
 
 
 # --- from points to shapes with PAPER -----------------------------------------------------------------------

@@ -138,3 +138,22 @@ def test_the_ablation_tells_each_step():
     table = ablation([0], [STEPS[-1]])
     assert [row[0] for row in table.rows] == ["+ wrong kinds crash, not counted"]
     assert 0.8 < float(table.rows[0][1]) < 0.9
+
+
+def test_a_fit_that_is_told_the_sides_fits_on_the_rendered_sensor_too():
+    """There is no true hit: a point belongs to the side that it is nearest to, and every point to one."""
+    lidar = pk.Lidar(model="webots")
+    for name in ("1_circle", "1_quadrado", "1_triangulo", "1_pentagon"):
+        points, owners = pk.study.told_points(SUITE[name], pk.scan(SUITE[name], pk.published_poses(), lidar), lidar)
+        assert (owners[:, 0] == 0).all()
+        assert len(points) == len(owners)
+        assert pk.evaluate(pk.study.oracle_fit(SUITE[name], points, owners), SUITE[name]).weighted_accuracy == 1
+
+
+def test_the_robot_stands_where_the_paper_s_stood():
+    """On its own sensor: not at the first way-point, but in shapes, too; on exact rays where it can stand."""
+    world = SUITE["4_mapa_4"]
+    for model, scans in (("webots", 76), ("exact", len(pk.teleport_poses(world)))):
+        run = pk.study.run(pk.study.Experiment("m", world, "ROBUST", pk.ROBUST, lidar=pk.Lidar(model=model)))
+        assert len(run.scans) == scans
+        assert np.unique(np.degrees(run.scans.poses[:, 2])).round(9).tolist() == [0.15 if model == "webots" else 0.0]

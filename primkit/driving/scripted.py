@@ -169,9 +169,8 @@ class _Board:
         places = places[clearance(world, places) >= WAY_CLEARANCE]
         pairs = cKDTree(places).query_pairs(1.5 * WAY_GRID, output_type="ndarray")
         lengths = np.hypot(*(places[pairs[:, 0]] - places[pairs[:, 1]]).T)
-        return cls(
-            world, places, coo_array((lengths, pairs.T.astype(np.int32)), shape=(len(places), len(places))).tocsr()
-        )
+        steps = coo_array((lengths, pairs.T.astype(np.int32)), shape=(len(places), len(places))).tocsr()
+        return cls(world, places, steps)
 
     def way(self, start: Floats, end: Floats) -> list[Floats]:
         """Return the places after the start that lead to the end; none where no way leads there."""

@@ -50,18 +50,13 @@ OTHER_LOOKS: tuple[dict[str, Any], ...] = (
 def plot_accuracy(tables: Iterable[Table]) -> Figure:
     """Return one figure: weighted accuracy within 5 mm and 1 mm against what was changed, with 95 % bands.
 
-    Raises ValueError if none of these sweeps is there.
+    The figure is as ``plot_story``'s. Raises ValueError if none of these sweeps is there.
 
     Parameters
     ----------
     tables : iterable of Table
         Of ``run_accuracy``. Noise, number of shapes, number of scans and spurious returns are drawn, as far as
         they are there.
-
-    Returns
-    -------
-    Figure
-        Made without pyplot. A notebook shows it when it is a cell's last value; ``save_figure`` writes it to a file.
     """
     tables = list(tables)
     for table in tables:

@@ -54,7 +54,7 @@ GHOST_GAP = 0.004  # m: a point farther than this from every outline belongs to 
 def plot_drive(world: World, drive: Drive, n_frames: int = 6) -> Figure:
     """Return one figure with frames of a drive: the way so far, what was seen by then, and what of it is new.
 
-    Raises ValueError if the drive has no scans, or an argument is of another type.
+    The figure is as ``plot_story``'s. Raises ValueError if the drive has no scans, or an argument is of another type.
 
     Parameters
     ----------
@@ -64,12 +64,6 @@ def plot_drive(world: World, drive: Drive, n_frames: int = 6) -> Figure:
         What was driven and seen.
     n_frames : int
         How many frames, evenly spread over the scans; at most one for each scan.
-
-    Returns
-    -------
-    Figure
-        Made without pyplot, so that nothing stays open. A notebook shows it when it is a cell's last value;
-        ``save_figure`` writes it to a file.
 
     Notes
     -----

@@ -49,28 +49,20 @@ def plot_story(
 ) -> Figure:
     """Return one figure with the whole story: a scan, the points, the clusters, and the shapes with their errors.
 
-    Raises ValueError if points, labels or report do not fit, as in the single plots.
+    It is made without pyplot: nothing stays open, no display is needed. A notebook shows it when it is a cell's last
+    value; ``save_figure`` writes it to a file. Raises ValueError if points, labels or report do not fit.
 
     Parameters
     ----------
-    world : World
-        The truth.
+    world : World, the truth
     scans : Scans
         What the LiDAR saw; the scan with the most hits is drawn.
-    points : array_like, shape (N, 2)
-        The grid's points, metres.
+    points : array_like, shape (N, 2), metres
     labels : array_like of int, shape (N,)
         Which cluster each point belongs to, from 0; -1 for strays.
     found : iterable of Detection, Circle and Polygon
-        What was found.
     report : Report
         The comparison of these shapes with the truth.
-
-    Returns
-    -------
-    Figure
-        Made without pyplot, so that nothing stays open and no display is needed. A notebook shows it when it is
-        a cell's last value; ``save_figure`` writes it to a file.
 
     Examples
     --------

@@ -26,7 +26,7 @@ from ..shapes import Circle, Shape
 from ..world import World
 
 
-def cast_plainly(world: World, poses: ArrayLike, angles: ArrayLike) -> NDArray[np.float64]:
+def cast_plainly(world: World, poses: ArrayLike, angles: ArrayLike, range_max: float = inf) -> NDArray[np.float64]:
     """Return what ``cast_rays`` returns for the same arguments, up to rounding; angles may come in any order."""
     poses, angles = np.reshape(poses, (-1, 3)), np.asarray(angles, dtype=float)
     ranges = np.full((len(poses), len(angles)), inf)
@@ -37,7 +37,8 @@ def cast_plainly(world: World, poses: ArrayLike, angles: ArrayLike) -> NDArray[n
         for j, angle in enumerate(angles.tolist()):
             ux, uy = cos(heading + angle), sin(heading + angle)
             wall = _to_sides(world.walls.tolist(), x, y, ux, uy)
-            ranges[i, j] = min([wall, *(_distance_along(shape, x, y, ux, uy) for shape in world.shapes)])
+            nearest = min([wall, *(_distance_along(shape, x, y, ux, uy) for shape in world.shapes)])
+            ranges[i, j] = nearest if nearest <= range_max else inf
     return ranges
 
 

@@ -13,7 +13,7 @@ Out: the points, and a table that says for each part what is off.
 2.0
 >>> print(task.marked("half", {}))
 half: 0 of 2 points
-○ 0 of 2  halves lengths: there is no function half: run its cell, and keep its name.
+- 0 of 2  halves lengths: there is no function half: run its cell, and keep its name.
 
 Not here: solutions. Those of the problem sets stay with the teacher.
 """
