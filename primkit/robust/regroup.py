@@ -190,6 +190,9 @@ def _margin(group: Group, groups: list[Group], tried: _Tried) -> float:
     for (a, b), union in tried.unions.items():
         if union is not None and group in (a, b) and a in groups and b in groups:
             others.append(cost_of([union]) - cost_of([a, b]))
+    split = next((parts for parts in tried.halves.values() if group in parts), ())
+    if any(part in groups and not part.choice.certain for part in split):
+        others.append(0.0)  # where the other half is in doubt, so is the cut
     return min(others)
 
 
