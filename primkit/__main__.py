@@ -18,13 +18,13 @@ import sys
 from collections.abc import Sequence
 
 from . import __version__
-from .commands import board, many, teach
+from .commands import board, studies, teach
 from .commands.words import LOOK, Parser, exit_code, nearest
 
 COMMANDS = {
     "map": (board.map_board, board.MAP_TEXT, board.MAP_EXAMPLES, board.map_options),
-    "study": (many.study, many.STUDY_TEXT, many.STUDY_EXAMPLES, many.study_options),
-    "accuracy": (many.accuracy, many.ACCURACY_TEXT, many.ACCURACY_EXAMPLES, many.accuracy_options),
+    "study": (studies.study, studies.STUDY_TEXT, studies.STUDY_EXAMPLES, studies.study_options),
+    "accuracy": (studies.accuracy, studies.ACCURACY_TEXT, studies.ACCURACY_EXAMPLES, studies.accuracy_options),
     "make-map": (board.make_map, board.MAKE_TEXT, board.MAKE_EXAMPLES, board.make_map_options),
     "teach": (teach.teach, teach.TEACH_TEXT, teach.TEACH_EXAMPLES, teach.teach_options),
 }

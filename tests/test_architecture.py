@@ -216,6 +216,46 @@ def not_the_plan(tracked: Iterable[str]) -> list[str]:
     ]
 
 
+def constants(source: str) -> Iterator[tuple[str, str]]:
+    """Yield (name, value as it is written) for each constant of a module."""
+    for node in ast.parse(source).body:
+        if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
+            (target, value) = (node.targets[0] if isinstance(node, ast.Assign) else node.target), node.value
+            together = isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple)
+            pairs = zip(target.elts, value.elts, strict=True) if together else [(target, value)]
+            yield from ((ast.unparse(t), ast.unparse(v)) for t, v in pairs if ast.unparse(t).isupper())
+
+
+def two_values(sources: Iterable[str]) -> list[str]:
+    """Report constants that have one name and different values."""
+    values: dict[str, set[str]] = {}
+    for source in sources:
+        for name, value in constants(source):
+            values.setdefault(name, set()).add(value)
+    return [f"{name} has {len(some)} values" for name, some in sorted(values.items()) if len(some) > 1]
+
+
+def two_files(names: Iterable[str]) -> list[str]:
+    """Report a file name that two rooms share, unless they do the same for a lesson."""
+    rooms: dict[str, set[str]] = {}
+    for name in names:
+        *room, file = name.split(".")
+        rooms.setdefault(file, set()).add(".".join(room))
+    lessons = {"checks", "widgets"}
+    return [f"{file} in {sorted(some)}" for file, some in rooms.items() if len(some) > 1 and not some <= lessons]
+
+
+def test_no_constant_has_two_values() -> None:
+    assert two_values(path.read_text(encoding="utf-8") for path in MODULES) == []
+    assert two_values(["REACH = 1  # m", "A, REACH = 2, 3"]) == ["REACH has 2 values"]
+
+
+def test_no_file_name_stands_twice() -> None:
+    names = [module_name(path) for path in MODULES if path.stem != "__init__"]
+    assert two_files(names) == []
+    assert two_files(["study.table", "table", "checks.rays", "widgets.rays"]) == ["table in ['', 'study']"]
+
+
 RULES = (wrong_way, knows_too_much, heavy, hidden_imports, global_random, talk, too_long)
 MODULES = sorted(PACKAGE.rglob("*.py"))
 

@@ -35,11 +35,11 @@ from ..palette import (
     VERMILION,
 )
 from .accuracy import PANELS, plot_accuracy
-from .driving import plot_change, plot_drive, plot_tour
-from .found import plot_found
+from .findings import plot_found
 from .look import draw_areas, draw_board
 from .pictures import plot_clusters, plot_points, plot_scan, plot_world
 from .story import plot_story, save_figure
+from .ways_driven import plot_change, plot_drive, plot_tour
 
 __all__ = ["plot_world", "plot_scan", "plot_points", "plot_clusters", "plot_found", "plot_story", "plot_drive"]
 __all__ += ["plot_tour", "plot_change", "plot_accuracy", "draw_board", "draw_areas", "save_figure", "PANELS"]

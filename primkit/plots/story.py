@@ -24,7 +24,7 @@ from ..measure import Detection
 from ..shapes import Shape
 from ..table import count
 from ..world import World
-from .found import plot_found
+from .findings import plot_found
 from .look import set_title
 from .pictures import plot_clusters, plot_points, plot_scan, plot_world
 

@@ -33,9 +33,9 @@ from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
 LEAST_POINTS = 8  # fewer fix nothing: a pentagon alone has ten numbers
 MOST_RADIUS = 0.25  # m: a larger circle than a quarter of the board is a wall
 LEAST_ARC = np.radians(60)  # a shorter arc fits a wide range of circles
-CIRCLE_TRIALS = 100  # with four fifths of the points on the circle, one sample in two is clean
+CANDIDATE_CIRCLE_TRIALS = 100  # with four fifths of the points on the circle, one sample in two is clean
 CIRCLE_ROUNDS = 10  # after three or four, hardly a point changes its weight
-SETTLED = 1e-7  # m: what moves by less has settled; the next round moves it by a small part of that
+SETTLED_MOVE = 1e-7  # m: what moves by less has settled; the next round moves it by a small part of that
 ENOUGH_POINTS = 200  # more do not make a first fit much better, and cost time
 STARTS_KEPT = 5  # of the guesses, those closest to the points are refined
 WIDER = 0.005  # m: guesses are judged with a longer reach than fits, because they still lie beside the points
@@ -128,7 +128,7 @@ def _rough(points: Floats, spread: float, rng: np.random.Generator) -> list[Cand
     """
     some_rng, circle_rng, line_rng = rng.spawn(3)
     some, reach = points[some_rng.permutation(len(points))[:ENOUGH_POINTS]], SIGMAS * spread
-    circle = find_circle(some, reach, trials=CIRCLE_TRIALS, rng=circle_rng)
+    circle = find_circle(some, reach, trials=CANDIDATE_CIRCLE_TRIALS, rng=circle_rng)
     lines = ransac_lines(some, reach, rng=line_rng)
     found = [judged_wall(points, line, _length_along(points, line, reach), spread) for line in lines[:1]]
     if circle is not None and circle.radius <= MOST_RADIUS:
@@ -235,7 +235,7 @@ def _polished_circle(points: Floats, circle: Circle, spread: float) -> Circle | 
             return None
         change = max(abs(fitted.radius - circle.radius), *np.abs(fitted.center - circle.center).tolist())
         circle = fitted
-        if change <= SETTLED:
+        if change <= SETTLED_MOVE:
             break
     return circle
 

@@ -38,7 +38,7 @@ from .scatter import CELL, CELL_STD, SIGMAS
 # where they may as well belong to the neighbour: a line over a hidden side touches the last points of both neighbours.
 # What shows less may as well be a piece of something else; so may an arc of less than such a share of its circle.
 LEAST_ON_SIDE = 4
-LEAST_STRETCH = 0.008
+LEAST_SEEN_STRETCH = 0.008
 LEAST_SHARE = 0.4
 LEAST_OF_CIRCLE = 0.45
 CORNER_SPREADS = 4.0
@@ -111,7 +111,7 @@ def sides_seen(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bo
         np.where(own, t, -np.inf).max(axis=0, initial=-np.inf),
     )
     inner = np.maximum((end - begin)[0] - 2 * CORNER_SPREADS * spread, 0.0)
-    return (own.sum(axis=0) >= LEAST_ON_SIDE) & (last - first >= np.maximum(LEAST_STRETCH, LEAST_SHARE * inner))
+    return (own.sum(axis=0) >= LEAST_ON_SIDE) & (last - first >= np.maximum(LEAST_SEEN_STRETCH, LEAST_SHARE * inner))
 
 
 def _of_circle(circle: Circle, points: Floats) -> Certainty:

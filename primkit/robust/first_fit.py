@@ -42,7 +42,7 @@ from .starts import Cut, best_cuts
 
 ENOUGH = 60  # points; fewer leave too much room for doubt
 ALL_AROUND = 0.9  # share of each side that must have been seen
-NEARLY_ALL = 0.98  # share of the points that must lie on the shape, once strays are left out
+NEARLY_ALL_POINTS = 0.98  # share of the points that must lie on the shape, once strays are left out
 MOST_OF_ALL = 0.9  # share of the points that must be left then
 LOOKS = 3  # so many times strays are left out
 STRAY = 20.0  # cost of a point that comes from nowhere, and not from the outline, at most
@@ -115,7 +115,7 @@ def at_another_glance(points: Floats, before: Candidate, spread: float, *, soft:
     if best is None or best.figure is None or min(best.seen) < ALL_AROUND:
         return None
     on_it = np.abs(_distances(local, best.figure, spread)[0]) <= SIGMAS * spread
-    return moved(best, middle) if on_it.mean() >= NEARLY_ALL else None
+    return moved(best, middle) if on_it.mean() >= NEARLY_ALL_POINTS else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,7 +156,7 @@ def _first_fit(points: Floats, spread: float) -> _Fit | None:
             return None
         distance, own = _distances(kept, figure, spread)
         on_it = np.abs(distance) <= SIGMAS * spread
-        if on_it.mean() >= NEARLY_ALL:
+        if on_it.mean() >= NEARLY_ALL_POINTS:
             break
         kept = kept[on_it]
         if len(kept) < max(ENOUGH, MOST_OF_ALL * len(points)):

@@ -43,12 +43,12 @@ MOST_BEADS = 300  # more are made larger: the tree's work goes with their number
 COMPANY, LEAST_COMPANY = 3.0, 3  # a bead with fewer points within three smallest beads is a stray
 AT_AN_END = 0.2  # of the path: there a stray may be its end, and is left out where that closes the path
 CLOSED_GAP = 0.04  # m: nearer ends close an outline: nearly twice as far as neighbours are linked
-KNOTS = 120  # cuts lie between two of so many places along the path
+PATH_KNOTS = 120  # cuts lie between two of so many places along the path
 PIECE_COST = 20.0  # about the price of a side's two numbers, see ``evidence.price``
 DEARER, TIMES_DEARER = 2.0, 4  # where pieces do not close, fewer are tried
 SIDE_CELLS, SIDE_SPREADS = 5.0, 2.0  # no side is shorter
 SHORT, FLAT_TURN = 3.0, np.radians(25)  # of the least side; where two pieces may be one
-LOOKS = 2  # strays lead cuts astray: once more without them
+CUT_LOOKS = 2  # strays lead cuts astray: once more without them
 FAR_SPREADS, FAR_CELLS = 9.0, 4.0  # what is farther from the first outline is a stray to the second
 
 
@@ -64,7 +64,7 @@ def free_outline(points: Floats, spread: float) -> Outlines | None:
     """
     least = max(SIDE_CELLS * CELL, SIDE_SPREADS * spread)
     kept, found = points, None
-    for _ in range(LOOKS):
+    for _ in range(CUT_LOOKS):
         ordered = round_order(kept, spread)
         starts = () if ordered is None else _outlines(ordered, spread, least)
         start = next((o for o in starts if o.closes(least)[0]), None)
@@ -193,7 +193,7 @@ def _outlines(points: Floats, spread: float, least: float) -> Iterator[Outlines]
 
 def _best_cut(points: Floats, spread: float, price: float, least: float) -> tuple[NDArray[np.intp], Floats]:
     """Return at which points the best pieces begin, shape (K,), and their sums, shape (6, K)."""
-    knots = np.arange(min(KNOTS, len(points)) + 1) * len(points) // min(KNOTS, len(points))
+    knots = np.arange(min(PATH_KNOTS, len(points)) + 1) * len(points) // min(PATH_KNOTS, len(points))
     moments = moments_between(points, knots)
     cost = np.where(long_enough(points, knots, least), squares_of(moments), np.inf) / spread**2 + price
     best, begin = np.append(0.0, np.full(len(cost), np.inf)), [0]  # best[j]: the least cost up to knot j

@@ -25,7 +25,7 @@ from .outlines import QUARTERS, Outlines, from_angle_order, joined
 from .refine import refit
 
 LINES_TRIED = 7  # five sides at most, and two for luck
-LINE_TRIALS = 200  # a side with an eighth of the points is drawn with 95 % certainty
+GUESSED_LINE_TRIALS = 200  # a side with an eighth of the points is drawn with 95 % certainty
 CLOSING_LINES = 3  # seldom are more than two sides hidden
 CLOSING_LENGTH = 0.012  # m: a shorter stretch of the hull is the usual distance between points
 SUBSETS_KEPT = 4  # the right set is among the first where RANSAC found all sides
@@ -55,7 +55,7 @@ def guess_outlines(points: Floats, sides: Outlines, k: int, reach: float) -> Out
 
 def ransac_lines(points: Floats, reach: float, *, rng: int | np.random.Generator | None = None) -> list[Line]:
     """Return lines that RANSAC finds in the points, the one with most points first; empty for fewer than three."""
-    found = find_lines(points, reach, left_over=0.0, most=LINES_TRIED, trials=LINE_TRIALS, rng=rng)
+    found = find_lines(points, reach, left_over=0.0, most=LINES_TRIED, trials=GUESSED_LINE_TRIALS, rng=rng)
     return [one.line for one in found if np.count_nonzero(one.inliers) >= 3]
 
 

@@ -33,7 +33,7 @@ from .scatter import CELL_STD, LEAST_SPREAD, SIGMAS, shared_rounding
 # A bendable outline has so many numbers more, if there are points for them, and at least so many to tell anything.
 BENDS, LEAST_BENDS = 24, 6
 BEND_COST = 36.0  # so set that 10 are left where A is 3.8 standard deviations above its mean
-CORNER_SPREADS = 2.0  # from the second side: nearer points may be of either, and pull at both
+CORNER_BAND_SPREADS = 2.0  # from the second side: nearer points may be of either, and pull at both
 SHARP = np.radians(75)  # a corner that turns so far is no bend
 
 
@@ -65,7 +65,7 @@ def residuals_along(points: Floats, figure: Circle | Outlines, spread: float) ->
         on_it = np.abs(distance) <= SIGMAS * spread
     else:
         place, distance, second = figure.places(points)
-        on_it = (np.abs(distance) <= SIGMAS * spread) & (second > CORNER_SPREADS * spread)
+        on_it = (np.abs(distance) <= SIGMAS * spread) & (second > CORNER_BAND_SPREADS * spread)
     return distance[on_it][np.argsort(place[on_it], kind="stable")]
 
 

@@ -31,11 +31,11 @@ from .outlines import Outlines
 from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, scatter
 
 # A side that has fewer points than this (shares count in part) has nothing to be fitted to, and stays.
-LEAST_SHARE = 2.0
+LEAST_OF_SIDE = 2.0
 
 HARD_ROUNDS = 8  # nearly all settle in four or five
 SOFT_ROUNDS = 30  # shares settle slowly around blurred corners; what is left then is far below a cell
-SETTLED = 1e-5  # radians, and 1e-6 m: a hundredth of what any sensor tells
+SETTLED_TURN = 1e-5  # radians, and 1e-6 m: a hundredth of what any sensor tells
 ROW_METRE = 10.0  # a metre counts as so many radians
 LONGEST_LEAP = 4.0  # a leap goes at most so many steps ahead, so that it stays near
 
@@ -110,7 +110,7 @@ def refine_soft(
             if not sound(refined).all():
                 return steps[-1]
             steps.append(refined)
-            if np.abs(_as_rows(refined) - _as_rows(steps[-2])).max(initial=0.0) <= SETTLED:
+            if np.abs(_as_rows(refined) - _as_rows(steps[-2])).max(initial=0.0) <= SETTLED_TURN:
                 return refined
         far = _leap(*steps)
         guess = far if sound(far).all() else steps[-1]
@@ -184,7 +184,7 @@ def refit(points: Floats, weights: Floats, outlines: Outlines, *, square: bool =
     x, y = points.T
     features = np.array([np.ones_like(x), x, y, x * x, y * y, x * y])
     mass, *moments = np.moveaxis(features @ weights, 1, 0)  # (C, K) each
-    enough = mass >= LEAST_SHARE
+    enough = mass >= LEAST_OF_SIDE
     mx, my, mxx, myy, mxy = moments / np.where(enough, mass, 1.0)  # sides without points are set right below
     sxx, syy, sxy = mxx - mx * mx, myy - my * my, mxy - mx * my  # scatter about each side's mean
 

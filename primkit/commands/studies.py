@@ -1,4 +1,4 @@
-"""Many: ``primkit study`` maps many boards, ``primkit accuracy`` changes one thing at a time.
+"""Studies: ``primkit study`` maps many boards, ``primkit accuracy`` changes one thing at a time.
 
 In:  the options of the command.
 Out: tables on the screen, all numbers as CSV in a folder, and a journal from which a stopped run continues.

@@ -14,7 +14,7 @@ from primkit.formats import Drive
 from primkit.grid import Grid
 from primkit.lidar import scan
 from primkit.plots import plot_drive, save_figure
-from primkit.plots.driving import SEEN_BEFORE, SEEN_NEW
+from primkit.plots.ways_driven import SEEN_BEFORE, SEEN_NEW
 from tests.helpers import exactly
 
 PICTURES = Path(__file__).resolve().parent.parent / "data" / "pictures"

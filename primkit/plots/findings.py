@@ -1,4 +1,4 @@
-"""Found: the shapes that were found, over the truth.
+"""Findings: the shapes that were found, over the truth.
 
 In:  what ``find_shapes`` returned; the ``World`` and the ``Report``, if there are any.
 Out: the axes, with outlines, centres and corners, the errors beside each shape, and the outcome as the title.

@@ -1,4 +1,4 @@
-"""Driving: how the map grows on a drive, where an exploration led, and what became of a shape that was moved.
+"""Ways driven: how the map grows on a drive, where an exploration led, and what became of a shape that was moved.
 
 In:  a ``World`` with a ``Drive`` or an ``Exploration`` of it; or a world before and after, with the points of a grid.
 Out: ``plot_drive`` a matplotlib ``Figure``, a strip of frames; the others the axes.
