@@ -3,7 +3,7 @@
 In:  the groups of points, each with how its explanation was chosen, and all points.
 Out: ``Found``: the shapes, and beside them ``walls``, ``others`` and ``strays``; the sum of all is the input.
 
-    wall     one straight piece; or each side of an outline that is wider than any shape, as of a room
+    wall     one straight piece; or each side of an outline that is larger than any shape, as of a room
     other    what has no corners and is no circle; or what is too small for its kind to show
     stray    what lies on none of them; and a group that chance would leave among so many strays
 
@@ -32,9 +32,10 @@ from .measure import Detection, Frame, Other, Thing, Wall, as_detection
 from .robust.choice import CERTAIN, Choice
 from .robust.outlines import LEAST_SIDE, Outlines
 from .robust.scatter import SIGMAS
-from .shapes import Polygon
+from .shapes import Polygon, Shape
 
-MOST_ACROSS = 0.45  # m on cells of 1 mm, as all here: what is wider is a room, whose sides are walls
+ROOM_ACROSS = 0.64  # m on cells of 1 mm, as all here: what is farther from corner to corner may be a room
+ROOM_WIDTH = 0.1  # m: whoever sees a room stands in it, as far from its walls as a sensor's least range
 LEAST_ON_WALL = 8  # points
 MOST_ON_WALLS = 0.75  # share of a group's points on the walls of a room
 BY_CHANCE = 5.0  # a shape has so many times the points of strays that its place would have by chance
@@ -111,7 +112,7 @@ def things_of(choice: Choice, count_margin: float, account: Account) -> list[Thi
     found = as_detection(choice)
     if found is None or account.by_chance(found.points):
         return []
-    if isinstance(best.figure, Outlines) and _is_room(choice, best.figure):
+    if isinstance(best.figure, Outlines) and _is_room(choice, found.shape):
         return list(_walls_around(choice, best.figure))
     if _is_other(choice, found):
         outline = found.shape.vertices if isinstance(found.shape, Polygon) else found.shape.outline(36)
@@ -119,9 +120,11 @@ def things_of(choice: Choice, count_margin: float, account: Account) -> list[Thi
     return [replace(found, count_margin=count_margin)]
 
 
-def _is_room(choice: Choice, outline: Outlines) -> bool:
-    """Tell whether an outline is wider than any shape, and fits most of the points."""
-    wide = np.ptp(outline.corners()[0], axis=0).max() > MOST_ACROSS
+def _is_room(choice: Choice, shape: Shape) -> bool:
+    """Tell whether an outline is larger than any shape, with room to stand in it, and fits most of the points."""
+    corners = shape.vertices if isinstance(shape, Polygon) else shape.outline(36)
+    across = float(np.hypot(*(corners[:, None] - corners).T).max())
+    wide = across > ROOM_ACROSS and shape.area > ROOM_WIDTH * across
     return bool(wide and choice.on_it.mean() >= MOST_ON_WALLS and choice.fit >= CERTAIN)
 
 
