@@ -168,15 +168,24 @@ def test_silence_beside_a_near_wall_clears_nothing():
     assert (grid.points()[:, 0] > 0.19).sum() >= far - 2
 
 
-def test_cells_that_fell_shake_nothing_more():
+def row(*ranges):
+    """One scan whose first beams read these ranges, and whose others go on."""
+    one = one_scan()
+    measured = one.ranges.copy()
+    measured[0, : len(ranges)] = ranges
+    return Scans(one.poses, one.angles, measured, one.inside)
+
+
+def test_what_is_connected_and_was_not_seen_since_falls_as_well():
+    """Ten cells seen in one scan; five of them are contradicted, and nobody looks at the others."""
+    grid = MovingGrid()
+    for seen in (row(*[0.2] * 10), *[row(*[np.inf] * 5, *[0.1] * 5)] * EVICTED_AFTER):
+        grid.add(seen)
+    assert (np.hypot(*grid.points().T) > 0.15).sum() == 0
+
+
+def test_cells_that_fell_take_nothing_more_along():
     """A row of cells is taken away and falls; one cell of a new row behind it must not pull that down as well."""
-
-    def row(*ranges):
-        one = one_scan()
-        measured = one.ranges.copy()
-        measured[0, : len(ranges)] = ranges
-        return Scans(one.poses, one.angles, measured, one.inside)
-
     grid = MovingGrid()
     for seen in (row(*[0.2] * 10), row(), row(), row(*[0.21] * 10)):
         grid.add(seen)
