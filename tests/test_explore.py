@@ -363,3 +363,9 @@ def test_the_picture_shows_the_way_and_the_scans(tours):
     np.testing.assert_array_equal(lines["scan"], tour.poses[:, :2])
     with pytest.raises(ValueError, match=exactly("tour must be of type Exploration, got int")):
         plot_tour(world, 3)
+
+
+def test_a_square_is_a_wall_while_no_more_than_twice_as_many_beams_went_through_as_hit_it():
+    board = SeenMap(0.05)
+    board._hits[0, :3], board._passes[0, :3] = 2, (3, 4, 5)
+    assert board.wall[0, :3].tolist() == [True, False, False]

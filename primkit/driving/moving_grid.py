@@ -47,7 +47,8 @@ from ..segmentation import components
 from ..show import thumbnail
 from ..table import count
 
-BEFORE_A_HIT = 0.01  # m: what lies this near before a hit may be the same outline, seen with 2 mm of noise or grazing
+# m: what lies this near before a hit may be the same outline, seen with noise or grazing, or through its own cell.
+BEFORE_A_HIT = 0.01
 SHARPEST = np.radians(30)  # no corner of a shape is sharper
 EVICTED_AFTER = 2  # contradictions, since it was seen last, that a cell is given up for
 CONNECTED = 0.015  # m: cells that hang together are nearer to their neighbours

@@ -27,11 +27,9 @@ from ..measure import Detection
 from ..robot import BODY, check_places
 from ..seen import is_seen
 from ..shapes import Shape
+from .moving_grid import BEFORE_A_HIT
 
 SQUARE = 0.01  # m: side of a square of the map
-# m: so far before a hit, squares' centres count as free: those that hold a piece of the outline are nearer (half a
-# diagonal, 7 mm), and 3 mm are left for noise.
-BEFORE_A_HIT = 0.01
 JOINED = 0.04  # m: hits of neighbouring beams this near to each other lie on one outline
 EXPLAINED = 0.01  # m: what lies in a shape that was found, or this near to it, is no place where another could hide
 # A shape with sides of 4 cm and corners of 30 degrees, the smallest there is, has 7 square centimetres.
