@@ -282,6 +282,8 @@ def _end_with(parent: int) -> None:
     """Watch the parent, once in each process: when it is killed, its workers would wait for minutes."""
     if os.getppid() == parent:  # else this is the parent itself, or a machine elsewhere
         Thread(target=_watch, args=(parent,), daemon=True).start()
+        if hasattr(signal, "pthread_sigmask"):  # before joblib 1.6, its own tracker lifts the mask at the start
+            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
 
 
 def _watch(parent: int) -> None:
