@@ -56,3 +56,13 @@ def test_the_tables_of_modules_name_every_room():
     story = README[README.index("| step | module |") : README.index("## The course")]
     rest = README[README.index("| room | what it is |") : README.index("To add a shape")]
     assert {room for room in rooms if f"`{room}`" not in story and f"`{room}" not in rest} <= {"__main__"}
+
+
+def test_nothing_advises_the_package_that_has_this_name_on_pypi():
+    """The name is somebody else's there: no page, message or notebook may send anybody to it."""
+    spoken = [*ROOT.glob("*.md"), *(ROOT / "primkit").rglob("*.py"), *(ROOT / "notebooks").rglob("*.md")]
+    spoken += (ROOT / "notebooks").rglob("*.ipynb")
+    advice = re.compile(r"pip install\b(?:(?!-e |no-index)[^\n|`])*[\"' ]primkit(?:\[|[\"'`]|\s|$)")
+    assert [str(path) for path in spoken if advice.search(path.read_text(encoding="utf-8"))] == []
+    assert advice.search('python -m pip install "primkit[teach]"')
+    assert advice.search("pip install primkit")

@@ -62,7 +62,8 @@ def _packages(environment: Path) -> Iterator[Finding]:
         pins = {match[1]: match[2] for line in lines if (match := PIN.match(line))}
         mend = f"{Path(sys.executable)} -m pip install -r {environment}"
     else:
-        pins, mend = dict.fromkeys(REQUIRED_PACKAGES, ""), f'{Path(sys.executable)} -m pip install "primkit[teach]"'
+        pins = dict.fromkeys(REQUIRED_PACKAGES, "")  # by their own names: "primkit" is somebody else's on PyPI
+        mend = f"{Path(sys.executable)} -m pip install {' '.join(pins)}"
     wrong = 0
     for name, wanted in pins.items():
         try:
