@@ -620,3 +620,10 @@ def test_the_html_escapes_what_it_shows(monkeypatch):
     assert texts == ["<b>&", '"', "c", "d", "<script>", "<i>", "&amp;", "1 < 2", "-", "'"]
     assert "a &lt; b &amp; c" in html
     assert "<script>" not in html
+
+
+def test_two_pairs_within_a_wide_gate_are_better_than_one_that_is_close():
+    """With a gate of 3 m, each found one 3 m from its own; the second true one has the first found one right at it."""
+    true = World([Circle((0, 0), 0.1), Circle((3, 0), 0.1)], size=20)
+    found = [Circle((3, 0), 0.1), Circle((6, 0), 0.1)]
+    assert len(match(found, true.shapes, gate=3.0)) == 2

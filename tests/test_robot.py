@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from primkit.lidar import scan
-from primkit.robot import inside_shape, skipped_waypoints, teleport_poses, waypoints
+from primkit.robot import BODY, inside_shape, skipped_waypoints, teleport_poses, waypoints
 from primkit.shapes import Circle, Polygon
 from primkit.world import World, random_world
 from tests.helpers import exactly
@@ -137,3 +137,11 @@ def test_inside_shape_by_hand():
     poses = np.array([(0, 0, 1), (0.5, 0, 2), (0.51, 0, 3), (1.5, 0.5, 4), (1, 1, 5), (1, 0.5, 6), (2.5, 0.5, 7)])
     assert inside_shape(world, poses).tolist() == [True, True, False, True, True, True, False]
     assert inside_shape(world, np.empty((0, 3))).tolist() == []
+
+
+def test_a_row_of_waypoints_nearer_to_a_wall_than_the_body_is_skipped():
+    """On a board of 0.93 m the last row is 3 cm from the wall, nearer than the body's 3.7 cm."""
+    free, walled = (teleport_poses(World(size=0.93, walls=walls)) for walls in (False, True))
+    assert (0.465 - np.abs(free[:, :2]).max(axis=1) < BODY).any()
+    assert (0.465 - np.abs(walled[:, :2]).max(axis=1) >= BODY).all()
+    assert len(walled) + len(skipped_waypoints(World(size=0.93, walls=True))) == len(free)
