@@ -17,8 +17,15 @@ and finds, names and measures the shapes. The public names, in the order of the 
 Each name is loaded from its module on first use, so that ``import primkit`` is quick; ``__init__.pyi`` lists them all.
 """
 
+import sys
+
 import lazy_loader
 
 __version__ = "0.1.0"
 
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+
+if "IPython" in sys.modules and (shell := sys.modules["IPython"].get_ipython()) is not None:
+    from .notebook import show_figures_with_words
+
+    show_figures_with_words(shell)

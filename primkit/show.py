@@ -4,7 +4,7 @@ In:  shapes; or a line of text, outlines with their colours, points and a way, m
 Out: text; or HTML: an SVG picture, without axes, and below it the text.
 
 >>> html = thumbnail("Grid: 1 cell", dots=[(0.1, 0.2)])
->>> "Grid: 1 cell" in html, html.count("h0")
+>>> "<p>Grid: 1 cell</p>" in html, html.count("h0")
 (True, 1)
 
 Not here: pictures to read values from; ``plots`` draws those.
@@ -22,6 +22,7 @@ from .arguments import Floats
 from .palette import GREY, INK
 from .shapes import KINDS, Shape
 from .table import count
+from .themed import themed
 
 SIDE, SIDE_RIM = 280, 6  # px
 MOST_SIDES = 6  # of a polygon, told one by one
@@ -82,8 +83,8 @@ def thumbnail(
     for points, color in ((stops, GREY), (marks, INK)):
         spots = "".join(f"M{x} {y}h0" for x, y in dict.fromkeys(pixels(points)))  # a pixel holds many points
         parts += [f'<path d="{spots}" stroke="{color}" stroke-width="2" stroke-linecap="round"/>'] * bool(spots)
-    head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{SIDE}" height="{SIDE}" role="img" style="background:#fff">'
-    return f"<div>{head}<title>{escape(text)}</title>{''.join(parts)}</svg><p>{escape(text)}</p></div>"
+    svg = f'<svg xmlns="http://www.w3.org/2000/svg" width="{SIDE}" height="{SIDE}" style="background:#fff">'
+    return f"<div>{themed(svg + ''.join(parts) + '</svg>', text)}<p>{escape(text)}</p></div>"
 
 
 def _points(points: ArrayLike) -> Floats:

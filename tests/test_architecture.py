@@ -19,15 +19,16 @@ PACKAGE = ROOT / "primkit"
 # The story: a room (a module, or a folder of them) imports only rooms above it. The table of contents, __init__, loads
 # rooms on first use; who imports it from inside could reach everything, so only the command line may.
 # Beside the plan: ``palette`` holds the colours that the plots, the sliders and the scene's page have in common,
-# without matplotlib; ``show`` is how nouns print and show themselves;
+# without matplotlib; ``show`` is how nouns print and show themselves; ``themed`` is how a page is given a picture, and
+# ``notebook`` has it done for figures;
 # ``found`` the list that find_shapes returns.
 ORDER = (
-    *("arguments", "table"),
+    *("arguments", "table", "themed"),
     *("shapes", "palette", "show", "world", "robot", "raycast", "faults", "rendered", "lidar", "grid"),
     *("segmentation", "ransac", "lines", "circles", "seen"),
     *("robust", "measure", "found", "account", "paper", "steps", "pipeline", "evaluation"),
     *("formats", "driving", "study", "plots", "widgets", "scene", "checks", "course"),
-    *("__init__", "commands", "__main__"),
+    *("notebook", "__init__", "commands", "__main__"),
 )
 
 # Rooms that know less than the order allows: the only ones that they import.

@@ -15,6 +15,7 @@ from types import ModuleType
 import pytest
 
 import primkit as pk
+from tests.helpers import words_in
 
 ROOT = Path(__file__).resolve().parent.parent
 LESSONS = {path.stem: path for path in sorted((ROOT / "notebooks").glob("*.ipynb"))}
@@ -23,6 +24,7 @@ MODEL = "01_see_with_rays"  # the lesson that the broken examples are made from
 CELLS, WORDS = (25, 40), (1200, 2000)
 CELL_WORDS, CELL_LINES, SETUP_LINES = 250, 20, 5
 FILE_SIZE = 1_000_000  # bytes
+LEAST_TOLD = 20  # letters of the words for who cannot see a picture
 
 # A lesson's parts in their order: what to look for, in the text or in the code.
 PARTS = {
@@ -118,12 +120,26 @@ def headings(lesson):
     return breaches + ["a level is skipped" for before, after in pairwise(levels) if after > before + 1]
 
 
+def shows_a_picture(cell):
+    return bool(outputs(cell, "image/png") or any("<img" in "".join(html) for html in outputs(cell, "text/html")))
+
+
+def unseen_by_the_blind(lesson):
+    """Each picture has words for who cannot see it, made by the code that draws it."""
+    breaches = []
+    for cell in filter(shows_a_picture, code_cells(lesson)):
+        told = [words for html in outputs(cell, "text/html") for words in words_in("".join(html))]
+        if not told or any(len(words) < LEAST_TOLD for words in told):
+            breaches.append(f"a picture with the words {told} after: {source(cell)}")
+    return breaches
+
+
 def pictures_without_words(lesson):
     following = [*lesson["cells"][1:], {"cell_type": "none", "source": ""}]
     return [
         f"no '*Figure: ...*' after: {source(cell)}"
         for cell, after in zip(lesson["cells"], following, strict=True)
-        if cell["cell_type"] == "code" and (outputs(cell, "image/png") or outputs(cell, "image/svg+xml"))
+        if cell["cell_type"] == "code" and shows_a_picture(cell)
         if not re.match(r"\*Figure: \S.{20,}?\*", source(after), re.DOTALL)
     ]
 
@@ -144,11 +160,7 @@ def slider_without_twin(lesson):
     shown = [re.search(r"^pk\.widgets\.(\w+)\(\)$", source(cell), re.MULTILINE) for cell in cells]
     sliders = {match[1] for cell, match in zip(cells, shown, strict=True) if match and is_slider(cell)}
     twins = {
-        name
-        for name in sliders
-        for cell in cells
-        if f"widgets.{name}().twin(" in source(cell)
-        if outputs(cell, "image/svg+xml")
+        name for name in sliders for cell in cells if f"widgets.{name}().twin(" in source(cell) if shows_a_picture(cell)
     }
     return ([] if sliders else ["no slider"]) + [f"no twin of {name}" for name in sorted(sliders - twins)]
 
@@ -218,7 +230,8 @@ def leftovers(lesson):
 
 
 RULES = (
-    *(not_run_in_order, failed_or_silent, shell, long_cells, setup, headings, pictures_without_words),
+    *(not_run_in_order, failed_or_silent, shell, long_cells, setup, headings),
+    *(pictures_without_words, unseen_by_the_blind),
     *(missing_parts, slider_without_twin, stubs, poor_quiz, poor_end, over_budget, leftovers),
 )
 
@@ -268,6 +281,17 @@ def added(to, words):
         cell["source"] = source(cell) + words
 
     return breaks
+
+
+def no_words(lesson):
+    for cell in code_cells(lesson):
+        for output in cell["outputs"]:
+            output.get("data", {}).pop("text/html", None)
+
+
+def empty_words(lesson):
+    cell = next(cell for cell in code_cells(lesson) if shows_a_picture(cell))
+    cell["outputs"][-1]["data"]["text/html"] = ['<img alt="" src="data:image/png;base64,">']
 
 
 def not_run(lesson):
@@ -347,6 +371,8 @@ BROKEN = {
     "no title": (headings, replaced("^# ", "")),
     "a skipped level": (headings, replaced("^## Recap", "### Recap\n\n##### Deep")),
     "a picture without words": (pictures_without_words, no_figure),
+    "a picture without an alt text": (unseen_by_the_blind, no_words),
+    "a picture with an empty alt text": (unseen_by_the_blind, empty_words),
     "a twin with too few words": (pictures_without_words, no_figure_of_the_twin),
     "parts in another order": (missing_parts, other_order),
     **{f"no {part}": (missing_parts, replaced(pattern, "nothing")) for part, pattern in PARTS.items()},

@@ -10,6 +10,7 @@ import pytest
 
 import primkit as pk
 from primkit.palette import KIND_COLORS
+from primkit.themed import in_theme
 from primkit.widgets.drawing import (
     MARKERS,
     Frame,
@@ -23,6 +24,7 @@ from primkit.widgets.drawing import (
     what_it_says,
 )
 from primkit.widgets.slider import Choice, Explorer, Slider, explore
+from tests.helpers import svg_in, words_in
 
 SLIDERS = {factory.__name__: factory for factory in pk.widgets.SLIDERS}
 CORNERS = [
@@ -87,11 +89,13 @@ def test_the_twin_holds_every_named_setting(name):
     slider = SLIDERS[name]()
     twin = slider.twin()
     assert len(slider.settings) >= 3
-    assert all(escape(setting) in twin._repr_svg_() for setting in slider.settings)
+    assert all(escape(setting) in twin.svg for setting in slider.settings)
     assert len({slider.draw(**values) for values in slider.settings.values()}) == len(slider.settings)
-    assert twin._repr_svg_() == slider.twin()._repr_svg_()
+    assert twin._repr_html_() == slider.twin()._repr_html_()
     assert repr(twin) == f"{slider!r}, its named settings"
-    elements(twin._repr_svg_())
+    assert svg_in(twin._repr_html_()) == twin.svg
+    assert words_in(twin._repr_html_()) == [what_it_says(twin.svg)]
+    elements(twin.svg)
 
 
 @pytest.mark.parametrize("name", SLIDERS)
@@ -99,7 +103,7 @@ def test_the_panel_has_a_named_control_for_each_value_and_a_button_for_each_sett
     import ipywidgets
 
     slider = SLIDERS[name]()
-    *controls, row, image, readout = slider.panel.children
+    *controls, row, image, readout = parts(slider)
     assert [control.value for control in controls] == list(slider.start.values())
     assert all(control.description for control in controls)
     assert [button.description for button in row.children] == list(slider.settings)
@@ -107,9 +111,15 @@ def test_the_panel_has_a_named_control_for_each_value_and_a_button_for_each_sett
     row.children[-1].click()
     last = list(slider.settings.values())[-1]
     assert [control.value for control in controls] == pytest.approx(list(last.values()))
-    assert image.value == slider.draw(**last)
+    assert image.value == in_theme(slider.draw(**last))
     assert 'aria-live="polite"' in readout.value
     assert slider.failure is None
+
+
+def parts(slider):
+    """The controls of a panel, the row of its buttons, its picture and what that says."""
+    (controls, image), readout = (slider.panel.children[0].children, slider.panel.children[1])
+    return [*controls.children, image, readout]
 
 
 def ring(radius, words="a"):
@@ -128,10 +138,10 @@ def rings(**settings):
 
 def test_moving_a_control_redraws_in_place():
     slider = rings()
-    radius, _words, _row, image, readout = slider.panel.children
+    radius, _words, _row, image, readout = parts(slider)
     assert radius.description == "radius [m]"
     radius.value = 0.3
-    assert image.value == ring(0.3)
+    assert image.value == in_theme(ring(0.3))
     assert ">0.3.<" in readout.value
 
 
@@ -143,7 +153,7 @@ def test_a_named_setting_redraws_once():
         return ring(radius, words)
 
     slider = explore(counted, *CONTROLS, settings={"both": {"radius": 0.1, "words": "b"}})
-    row = slider.panel.children[-3]
+    row = parts(slider)[-3]
     calls.clear()
     row.children[0].click()
     assert calls == [(0.1, "b")]
@@ -151,7 +161,7 @@ def test_a_named_setting_redraws_once():
 
 def test_an_error_is_a_sentence_in_the_picture_s_place_and_is_kept():
     slider = rings()
-    radius, _words, _row, image, readout = slider.panel.children
+    radius, _words, _row, image, readout = parts(slider)
     size = size_of(image.value)
     radius.value = 0.4
     message = "This could not be drawn. ValueError: radius must be at most 0.35 m, got 0.4 < or so"
@@ -161,7 +171,7 @@ def test_an_error_is_a_sentence_in_the_picture_s_place_and_is_kept():
     assert isinstance(slider.failure, ValueError)
     radius.value = 0.3
     assert slider.failure is None
-    assert image.value == ring(0.3)
+    assert image.value == in_theme(ring(0.3))
 
 
 def test_an_error_reaches_who_calls_draw():
@@ -218,7 +228,7 @@ def test_a_twin_needs_settings():
 def test_a_slider_has_the_diagram_of_its_lesson(name):
     diagram = SLIDERS[name]().diagram()
     assert repr(diagram).startswith("Diagram: ")
-    assert elements(diagram._repr_svg_())[:3] == ["svg", "title", "desc"]
+    assert elements(diagram.svg)[:3] == ["svg", "title", "desc"]
 
 
 def test_a_diagram_must_have_been_given():

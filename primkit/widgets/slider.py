@@ -27,11 +27,13 @@ from itertools import product
 from typing import Any
 
 from ..arguments import short
-from .drawing import WIDEST_PICTURE, sentence, side_by_side, size_of, what_it_says
+from ..themed import in_theme, themed
+from .drawing import sentence, side_by_side, size_of, what_it_says
 
 Draw = Callable[..., str]
 
 READOUT_WIDTH = 640  # px: three lines of this width hold 250 letters
+CONTROLS_WIDTH = 425  # px: with a picture of this width beside them they fit into a notebook's column
 
 
 @dataclass(frozen=True)
@@ -111,7 +113,7 @@ class Choice:
         """Return buttons of ipywidgets, all options in sight: Lab takes the arrow keys away from a drop-down list."""
         import ipywidgets
 
-        named = _named(self) | {"layout": _wide(WIDEST_PICTURE), "style": {"button_width": "auto"}}
+        named = _named(self) | {"layout": _wide(CONTROLS_WIDTH), "style": {"button_width": "auto"}}
         buttons = ipywidgets.ToggleButtons(options=self.options, value=self.start, **named)
         return buttons.add_class("widget-inline-hbox")  # the name stands to the left, as beside a slider
 
@@ -120,16 +122,25 @@ Control = Slider | Choice
 
 
 class Picture:
-    """A picture that a notebook shows, and stores: SVG with a short text for where there are no pictures."""
+    """A picture that a notebook shows, and stores: with its words, and a short text for where there are no pictures."""
 
     def __init__(self, svg: str, name: str) -> None:
         self.svg, self.name = svg, name
 
-    def _repr_svg_(self) -> str:
-        return self.svg
+    def _repr_html_(self) -> str:
+        return themed(self.svg, what_it_says(self.svg))
 
     def __repr__(self) -> str:
         return self.name
+
+
+class Twin(Picture):
+    """A picture that a click unfolds, since it stands below the slider that shows more; on paper it is open."""
+
+    def _repr_html_(self) -> str:
+        opened = "<style>@media print{.primkit-twin::details-content{content-visibility:visible;height:auto}}</style>"
+        head = "<summary>The same picture with each named setting, side by side</summary>"
+        return f'{opened}<details class="primkit-twin">{head}{super()._repr_html_()}</details>'
 
 
 class Explorer:
@@ -159,12 +170,12 @@ class Explorer:
         """Return the values at every corner of the box that the controls span; of choices, all options."""
         return [dict(zip(self.start, values, strict=True)) for values in product(*(c.ends for c in self.controls))]
 
-    def twin(self) -> Picture:
+    def twin(self) -> Twin:
         """Return the named settings side by side as one picture, for where nothing can be moved."""
         pictures = [self.draw(**values) for values in self.settings.values()]
         if not pictures:
             raise ValueError("a twin needs named settings, got none")
-        return Picture(side_by_side(pictures, list(self.settings)), f"{self!r}, its named settings")
+        return Twin(side_by_side(pictures, list(self.settings)), f"{self!r}, its named settings")
 
     def diagram(self) -> Picture:
         """Return the drawing behind the lesson's formula."""
@@ -180,7 +191,7 @@ class Explorer:
         svg = self.draw()  # at the start an error is not caught: a lesson that cannot begin should say so
         width, _ = size_of(svg)
         # Of one size, whatever is drawn: the page below must not jump.
-        self._image = ipywidgets.HTML(svg, layout=_wide(width))
+        self._image = ipywidgets.HTML(in_theme(svg), layout=_wide(width))
         self._readout = ipywidgets.HTML(_spoken(svg), layout=_wide(READOUT_WIDTH) | {"min_height": "66px"})
         self._knobs = {control.name: control.widget() for control in self.controls}
         self._line_up()
@@ -188,8 +199,10 @@ class Explorer:
         for knob in self._knobs.values():
             knob.observe(self._redraw, names="value")
         buttons = [self._button(name) for name in self.settings]
-        row = ipywidgets.HBox(buttons, layout=_wide(WIDEST_PICTURE) | {"flex_flow": "row wrap"})
-        return ipywidgets.VBox([*self._knobs.values(), row, self._image, self._readout])
+        row = ipywidgets.HBox(buttons, layout=_wide(CONTROLS_WIDTH) | {"flex_flow": "row wrap"})
+        controls = ipywidgets.VBox([*self._knobs.values(), row])
+        beside = ipywidgets.Box([controls, self._image], layout={"flex_flow": "row wrap"})  # below, where room is short
+        return ipywidgets.VBox([beside, self._readout])
 
     def _line_up(self) -> None:
         """Give all names the width of the longest, as one that does not fit would be cut off."""
@@ -221,7 +234,7 @@ class Explorer:
             width, height = size_of(self._image.value)
             svg = sentence(width, height, f"This could not be drawn. {type(error).__name__}: {error}")
             self.failure = error
-        self._image.value, self._readout.value = svg, _spoken(svg)
+        self._image.value, self._readout.value = in_theme(svg), _spoken(svg)
 
     def _button(self, name: str) -> Any:
         import ipywidgets
@@ -281,7 +294,7 @@ def explore(
 def _named(control: Control) -> dict[str, Any]:
     """Return what all widgets of controls share: the name with its unit, and room for it."""
     label = (control.label or control.name) + (f" [{control.unit}]" if control.unit else "")
-    return {"description": label, "layout": _wide(425)}
+    return {"description": label, "layout": _wide(CONTROLS_WIDTH)}
 
 
 def _wide(width: int) -> dict[str, str]:
