@@ -20,7 +20,8 @@ from .measure import Detection as Detection, measure_shape as measure_shape
 from .paper import measure_as_published as measure_as_published
 from .steps import Steps as Steps
 from .pipeline import find_shapes as find_shapes, Settings as Settings, PAPER as PAPER, ROBUST as ROBUST
-from .evaluation import evaluate as evaluate, match as match, Report as Report
+from .evaluation import evaluate as evaluate, match as match
+from .report import Report as Report
 
 from .driving import explore as explore, Exploration as Exploration
 from .driving.scripted import scripted_route as scripted_route

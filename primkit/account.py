@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from .arguments import Floats
 from .found import Found
-from .measure import Detection, Frame, Other, Thing, Wall, as_detection
+from .measure import CELL, Detection, Frame, Other, Thing, Wall, as_detection
 from .robust.choice import CERTAIN, Choice
 from .robust.outlines import LEAST_SIDE, Outlines
 from .robust.scatter import SIGMAS
@@ -83,7 +83,7 @@ class Account:
         shapes = sorted((t for t in settled if isinstance(t, Detection)), key=lambda d: tuple(d.shape.centroid))
         walls = sorted((t for t in settled if isinstance(t, Wall)), key=lambda w: tuple(w.start))
         others = sorted((t for t in settled if isinstance(t, Other)), key=lambda o: tuple(o.points.mean(axis=0)))
-        return Found(shapes, walls, others, self.points[left])
+        return Found(shapes, walls, others, self.points[left], CELL * self.frame.unit)
 
     def by_chance(self, points: Floats) -> bool:
         """Tell whether so many strays make as many points at one place by chance."""

@@ -16,6 +16,10 @@ Out: ``Report``: which found shape stands for which true one, how far off each v
 
 A missed true shape is wrong in every part; a false alarm is one more wrong shape.
 
+* missed: no found shape stands for it, though it may have been found as a thing of no kind
+* false alarm: a found shape, certain or not, that stands for no true one. Walls, things of no kind and strays claim to
+  be no shape and are no false alarms: ``Report.rest`` tells how right they are.
+
 ``protocol="paper"`` repeats the published scoring, which is no measure of how right a method is: see ``evaluate``. A
 shape of a wrong kind ends it before anything is written: only runs without one are in the published tables.
 
@@ -25,166 +29,31 @@ Sources: the weights are the paper's; the assignment is optimal, Kuhn (1955), "T
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 
-from .arguments import ROUNDING, Floats, as_positive, check_type, doubt, short
-from .measure import Detection
+from .arguments import ROUNDING, as_positive, check_type, doubt, short
+from .found import Found, resolution_of
+from .measure import CELL, Detection
 from .paper import published_values
+from .report import PAPER_DIGITS, Match, Protocol, Report, n_dimensions
+from .rest import Rest
 from .shapes import Circle, Polygon, Shape
-from .table import Table
 from .world import World
 
-Protocol = Literal["fair", "paper"]
+TOLERANCE = 0.005  # m on a board of 1 m, or cells of 1 mm
+GATE = 0.10  # m on the same: a shape whose centre is farther off than a large circle's radius is another shape
 
-SHAPE_WEIGHT, CENTER_WEIGHT, DIMENSION_WEIGHT = 0.4, 0.3, 0.3
-GATE = 0.10  # m: a shape whose centre is farther off than a large circle's radius is another shape
-
-# The published scoring: both sides rounded to 1 cm, right when found - true < 1 mm; accuracies to two decimals.
-PAPER_DIGITS, PAPER_TOLERANCE = 2, 0.001
-
-
-@dataclass(frozen=True, eq=False)
-class Match:
-    """A true shape and the found one that stands for it.
-
-    Parameters
-    ----------
-    found, true : Circle or Polygon
-    center_error : array, shape (2,)
-        found - true, x and y, metres.
-    dimension_error : tuple of float, or None
-        found - true for each, metres; None when kinds or numbers of corners differ: there is nothing to compare.
-    center_right, dimension_right : tuple of bool
-        Which of the values count as right.
-    """
-
-    found: Shape
-    true: Shape
-    center_error: Floats
-    dimension_error: tuple[float, ...] | None
-    center_right: tuple[bool, ...]
-    dimension_right: tuple[bool, ...]
-
-    @property
-    def kind_right(self) -> bool:
-        """Whether the found shape has the true kind."""
-        return self.found.kind == self.true.kind
-
-    @property
-    def all_right(self) -> bool:
-        """Whether kind, centre and dimensions are all right."""
-        return self.kind_right and all(self.center_right) and all(self.dimension_right)
-
-
-@dataclass(frozen=True, eq=False)
-class Report:
-    """The outcome of a comparison; prints as a table, shows as HTML in a notebook.
-
-    Parameters
-    ----------
-    matches : tuple of Match, in the order of the true shapes
-    missed, false_alarms : tuple of Circle and Polygon
-        True shapes that nothing found stands for; found shapes that stand for nothing.
-    tolerance : float, metres
-    protocol : {"fair", "paper"}
-        How it was scored.
-    crashed : bool
-        Whether the published scoring ends without a result, for a shape of a wrong kind: it looks for a dimension that
-        the true shape does not have. (A pentagon in the place of a rectangle passes.) All accuracies are then 0. What
-        it does when shapes are missing is not known; they count as wrong in every part.
-    """
-
-    matches: tuple[Match, ...]
-    missed: tuple[Shape, ...]
-    false_alarms: tuple[Shape, ...]
-    tolerance: float
-    protocol: Protocol = "fair"
-    crashed: bool = False
-
-    @property
-    def shape_accuracy(self) -> float:
-        """Matched shapes of the right kind / (true shapes + false alarms)."""
-        wrong = len(self.missed) + len(self.false_alarms)
-        return self._told(_share([m.kind_right for m in self.matches], wrong, nothing=1.0))
-
-    @property
-    def center_accuracy(self) -> float:
-        """Coordinates within tolerance / (2 x true shapes)."""
-        right = [r for m in self.matches for r in m.center_right]
-        return self._told(_share(right, 2 * len(self.missed), nothing=float(not self.false_alarms)))
-
-    @property
-    def dimension_accuracy(self) -> float:
-        """Dimensions within tolerance / dimensions of all true shapes."""
-        right = [r for m in self.matches for r in m.dimension_right]
-        missed = sum(_n_dimensions(s, self.protocol) for s in self.missed)
-        return self._told(_share(right, missed, nothing=float(not self.false_alarms)))
-
-    @property
-    def weighted_accuracy(self) -> float:
-        """0.4 shape + 0.3 centre + 0.3 dimension accuracy."""
-        return self._told(
-            SHAPE_WEIGHT * self.shape_accuracy
-            + CENTER_WEIGHT * self.center_accuracy
-            + DIMENSION_WEIGHT * self.dimension_accuracy
-        )
-
-    def _told(self, accuracy: float) -> float:
-        """Return an accuracy as the protocol tells it: the published one rounds, and tells none of a crashed run."""
-        if self.protocol == "fair":
-            return accuracy
-        return 0.0 if self.crashed else round(accuracy, PAPER_DIGITS)
-
-    @property
-    def count_right(self) -> bool:
-        """Whether as many shapes were found as there are."""
-        return len(self.missed) == len(self.false_alarms)
-
-    def rows(self) -> list[tuple[str, str, str, str, str]]:
-        """Return a table's rows: true kind, found kind, centre error, dimension errors, verdict."""
-        rows: list[tuple[str, str, str, str, str]] = []
-        for m in self.matches:
-            dimensions = "-" if m.dimension_error is None else _in_mm(m.dimension_error)
-            verdict = "right" if m.all_right else "wrong " + " and ".join(_faults(m))
-            rows.append((m.true.kind, m.found.kind, _in_mm(m.center_error), dimensions, verdict))
-        rows += [(shape.kind, "-", "-", "-", "missed") for shape in self.missed]
-        rows += [("-", shape.kind, "-", "-", "false alarm") for shape in self.false_alarms]
-        return rows
-
-    def scores(self) -> str:
-        """Return the scores as one sentence."""
-        if self.crashed:
-            return "crashed: the published scoring ends at a shape of a wrong kind, and no accuracy is told"
-        rule = f"within {1000 * self.tolerance:g} mm" if self.protocol == "fair" else "scored as published"
-        return (
-            f"weighted accuracy {self.weighted_accuracy:.3f} = 0.4 x shape {self.shape_accuracy:.3f}"
-            f" + 0.3 x centre {self.center_accuracy:.3f} + 0.3 x dimensions {self.dimension_accuracy:.3f}  ({rule})"
-        )
-
-    def table(self) -> Table:
-        """Return the rows as a table, and the scores below it."""
-        return Table(REPORT_HEADER, self.rows(), notes=(self.scores(),))
-
-    def __repr__(self) -> str:
-        return f"{replace(self.table(), notes=())}\n\n{self.scores()}"  # the scores stay on one line
-
-    def _repr_html_(self) -> str:
-        return self.table()._repr_html_()
-
-
-REPORT_HEADER = ("true shape", "found as", "centre off by x, y [mm]", "dimensions off by [mm]", "verdict")
+PAPER_TOLERANCE = 0.001  # m: of the published scoring, which rounds both sides to 1 cm
 
 
 def evaluate(
     found: Iterable[Detection | Shape],
     world: World,
-    tolerance: float = 0.005,
+    tolerance: float | None = None,
     *,
     protocol: Protocol = "fair",
-    gate: float = GATE,
+    gate: float | None = None,
 ) -> Report:
     """Compare what was found with the truth.
 
@@ -195,15 +64,22 @@ def evaluate(
     found : iterable of Detection, Circle and Polygon
         What ``find_shapes`` returned, or shapes of your own.
     world : World, the truth
-    tolerance : float
-        A value is right when it is at most this far from the truth, in metres.
+    tolerance : float, optional
+        A value is right when it is at most this far from the truth, in metres; 5 mm when not given.
     protocol : {"fair", "paper"}
         ``"fair"``: two-sided, unrounded, paired by the optimal assignment. ``"paper"``: as in the published
         code, where both are rounded to 1 cm, every value that is too small counts as right, pairs are made in the
         order of kind and x, a rectangle's found height is compared with its true width, and a wrong kind ends it all
         (``Report.crashed``); see ``paper.published_values``. Tolerance and gate then play no part.
-    gate : float
-        A found shape whose centre is farther than this from a true one cannot stand for it, in metres.
+    gate : float, optional
+        A found shape whose centre is farther than this from a true one cannot stand for it, in metres; 10 cm when not
+        given.
+
+    Notes
+    -----
+    Lengths that are not given follow the scale: where both the board is larger than 1 m and the cells are larger than
+    1 mm (or both are smaller), they grow (or shrink) as the lesser of these two changes says. So a board of 10 m on
+    cells of 1 cm is right within 5 cm, and one of 1 m within 5 mm whatever its cells are. The report says which.
 
     Examples
     --------
@@ -216,10 +92,15 @@ def evaluate(
     """
     check_type(world, World, "world must be a World, as in evaluate(found, world)")
     check_type(found, Iterable, "found must be a list of detections or shapes, as in evaluate(found, world)")
-    tolerance, gate = as_positive(tolerance, "tolerance", zero=True), as_positive(gate, "gate", zero=True)
-    for name, value in (("tolerance", tolerance), ("gate", gate)):
+    given = {"tolerance": tolerance, "gate": gate}
+    known = {name: as_positive(value, name, zero=True) for name, value in given.items() if value is not None}
+    for name, value in known.items():
         if value > world.size:
             doubt(f"{name} is {value:g} m on a board of {world.size:g} m: is it in millimetres?", depth=1)
+    beside = found if isinstance(found, Found) else Found()
+    found = found if isinstance(found, Found) else tuple(found)
+    scale = sorted((1.0, world.size, resolution_of(found) / CELL))[1]
+    tolerance, gate = known.get("tolerance", scale * TOLERANCE), known.get("gate", scale * GATE)
     shapes, crashed = [_as_shape(item) for item in found], False
     if protocol == "fair":
         pairs = match(shapes, world.shapes, gate)
@@ -238,6 +119,8 @@ def evaluate(
         tolerance=tolerance,
         protocol=protocol,
         crashed=crashed,
+        found=tuple(found),
+        rest=Rest.of(beside, world, tolerance),
     )
 
 
@@ -274,7 +157,7 @@ def _compare_fairly(found: Shape, true: Shape, tolerance: float) -> Match:
     """Compare centroids and dimensions, both ways; sides in order under the best cyclic shift."""
     center, ours, theirs = found.centroid - true.centroid, np.array(found.dimensions), np.array(true.dimensions)
     if found.kind != true.kind or len(ours) != len(theirs):
-        return Match(found, true, center, None, _within(center, tolerance), (False,) * _n_dimensions(true))
+        return Match(found, true, center, None, _within(center, tolerance), (False,) * n_dimensions(true))
     shifts = range(len(theirs)) if len(theirs) >= 3 else [0]
     errors = [np.roll(ours, shift) - theirs for shift in shifts]
     dimension = tuple(min(errors, key=lambda e: float(np.abs(e).sum())).tolist())
@@ -317,24 +200,5 @@ def _as_shape(item: Detection | Shape) -> Shape:
     return shape
 
 
-def _n_dimensions(shape: Shape, protocol: Protocol = "fair") -> int:
-    return len(published_values(shape, truth=True)) - 2 if protocol == "paper" else len(shape.dimensions)
-
-
 def _within(errors: Iterable[float], tolerance: float) -> tuple[bool, ...]:
     return tuple(bool(abs(e) <= tolerance + ROUNDING) for e in errors)
-
-
-def _share(right: Sequence[bool], wrong: int, nothing: float) -> float:
-    """Return the share of right values, ``wrong`` more of them being wrong; ``nothing`` when there are none at all."""
-    total = len(right) + wrong
-    return sum(right) / total if total else nothing
-
-
-def _in_mm(errors: Iterable[float]) -> str:
-    return ", ".join(f"{round(1000 * e, 2) + 0.0:+.2f}" for e in errors)  # + 0.0: no "-0.00"
-
-
-def _faults(m: Match) -> list[str]:
-    parts = {"kind": m.kind_right, "centre": all(m.center_right), "dimensions": all(m.dimension_right)}
-    return [part for part, right in parts.items() if not right and (part != "dimensions" or m.kind_right)]

@@ -2,7 +2,7 @@
 
 A place q on an outline counts as seen when some point p lies within reach of it:
 
-    min |q - p| <= REACH
+    min |q - p| <= reach, 12 cells
 
 In:  places on outlines, shape (..., 2), or a shape; points, shape (N, 2), metres.
 Out: for each place whether it was seen; for a shape the share of each of its sides.
@@ -21,17 +21,17 @@ import numpy as np
 from .arguments import Bools, Floats
 from .shapes import Circle, Shape
 
-REACH = 0.012  # m: about four times as far as neighbours on an outline lie apart
+REACH = 0.012  # m on cells of 1 mm: about four times as far as neighbours on an outline lie apart
 PLACES_PER_SIDE = 50  # a side is looked at in so many places, a circle in four times as many
 
 
-def is_seen(places: Floats, points: Floats) -> Bools:
-    """Tell which places, shape (..., 2), have one of the points within ``REACH``; shape (...)."""
+def is_seen(places: Floats, points: Floats, reach: float = REACH) -> Bools:
+    """Tell which places, shape (..., 2), have one of the points within ``reach`` metres; shape (...)."""
     from scipy.spatial import cKDTree
 
     if len(points) == 0:
         return np.zeros(places.shape[:-1], dtype=bool)
-    near: Bools = cKDTree(points).query(places)[0] <= REACH
+    near: Bools = cKDTree(points).query(places)[0] <= reach
     return near
 
 

@@ -12,7 +12,8 @@ Not here: pictures to read values from; ``plots`` draws those.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
 from html import escape
 
 import numpy as np
@@ -40,17 +41,29 @@ def census(shapes: Sequence[Shape]) -> str:
     return count(len(kinds), "shape") + (f": {told}" if told else "")
 
 
-def in_mm(shape: Shape, measured: Sequence[bool] = ()) -> tuple[str, str]:
+def lengths_in_mm(lengths: Iterable[float], resolution: float = 0.001) -> list[str]:
+    """Return lengths, metres, as texts, millimetres, to a tenth of a cell of this side, metres.
+
+    >>> lengths_in_mm([0.1, -1e-9]), lengths_in_mm([0.1], 0.01), lengths_in_mm([0.1], 0.0005)
+    (['100.0', '0.0'], ['100'], ['100.00'])
+    """
+    digits = max(0, math.ceil(1 - math.log10(1000 * resolution) - 1e-9))
+    return [f"{round(1000 * length, digits) + 0.0:.{digits}f}" for length in lengths]  # + 0.0: no "-0.0"
+
+
+def in_mm(shape: Shape, measured: Sequence[bool] = (), resolution: float = 0.001) -> tuple[str, str]:
     """Return a shape's centre and dimensions as texts, millimetres; what was not measured stands in brackets.
+
+    Texts are as long as makes sense on cells of side ``resolution``, metres.
 
     >>> from primkit.shapes import Circle, Polygon
     >>> in_mm(Circle((0.1, 0), 0.06)), in_mm(Polygon([(0, 0), (0.2, 0), (0.2, 0.1), (0, 0.1)]), (True, False))
     (('100.0, 0.0', 'radius 60.0'), ('100.0, 50.0', '200.0 x (100.0)'))
     """
     known = [*measured, *[True] * (len(shape.dimensions) - len(measured))]
-    lengths = [f"{1000 * d:.1f}" for d in shape.dimensions]
+    lengths = lengths_in_mm(shape.dimensions, resolution)
     numbers = [text if sure else f"({text})" for text, sure in zip(lengths, known, strict=True)]
-    centre = ", ".join(f"{1000 * c:.1f}" for c in shape.centroid)
+    centre = ", ".join(lengths_in_mm(shape.centroid, resolution))
     if shape.kind in ("circle", "rectangle"):
         return centre, "radius " * (shape.kind == "circle") + " x ".join(numbers)
     more = f", ... ({len(numbers)} sides)" if len(numbers) > MOST_SIDES else ""

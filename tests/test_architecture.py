@@ -21,12 +21,12 @@ PACKAGE = ROOT / "primkit"
 # Beside the plan: ``palette`` holds the colours that the plots, the sliders and the scene's page have in common,
 # without matplotlib; ``show`` is how nouns print and show themselves; ``themed`` is how a page is given a picture, and
 # ``notebook`` has it done for figures;
-# ``found`` the list that find_shapes returns.
+# ``found`` the list that find_shapes returns; ``rest`` what a report tells of all in it that is no shape.
 ORDER = (
     *("arguments", "table", "themed"),
     *("shapes", "palette", "show", "world", "robot", "raycast", "faults", "rendered", "lidar", "grid"),
     *("segmentation", "ransac", "lines", "circles", "seen"),
-    *("robust", "measure", "found", "account", "paper", "steps", "pipeline", "evaluation"),
+    *("robust", "measure", "found", "account", "paper", "steps", "pipeline", "rest", "report", "evaluation"),
     *("formats", "driving", "study", "plots", "widgets", "scene", "checks", "course"),
     *("notebook", "__init__", "commands", "__main__"),
 )

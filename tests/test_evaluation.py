@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from primkit import evaluation
-from primkit.evaluation import Match, Report, evaluate, match
+from primkit import report
+from primkit.evaluation import evaluate, match
 from primkit.formats import published_suite, recorded_rows
 from primkit.measure import Detection
+from primkit.report import REPORT_HEADER, Match, Report
 from primkit.shapes import Circle, Polygon
 from primkit.world import PENTAGON, World, random_world
 from tests.helpers import exactly
@@ -606,13 +607,13 @@ def test_the_html_is_well_formed_and_says_the_same(report):
     reader.close()
     assert reader.open == []
     cells = [text for tag, text in reader.cells if tag in ("th", "td")]
-    assert cells == [cell for row in (evaluation.REPORT_HEADER, *report.rows()) for cell in row]
+    assert cells == [cell for row in (REPORT_HEADER, *report.rows()) for cell in row]
     assert [text for tag, text in reader.cells if tag == "p"] == [report.scores()]
     assert reader.tags.count("tr") == 1 + len(report.rows())
 
 
 def test_the_html_escapes_what_it_shows(monkeypatch):
-    monkeypatch.setattr(evaluation, "REPORT_HEADER", ("<b>&", '"', "c", "d", "<script>"))
+    monkeypatch.setattr(report, "REPORT_HEADER", ("<b>&", '"', "c", "d", "<script>"))
     monkeypatch.setattr(Report, "rows", lambda _: [("<i>", "&amp;", "1 < 2", "-", "'")])
     monkeypatch.setattr(Report, "scores", lambda _: "a < b & c")
     html = evaluate([], World())._repr_html_()

@@ -69,11 +69,12 @@ def test_a_noun_shows_in_a_notebook_and_fits_a_screen(noun):
 def test_what_was_found_prints_as_a_table():
     head, names, dashes, *rows = repr(FOUND).splitlines()
     assert head == "2 shapes found"
-    assert names.split("  ")[-3:] == ["dimensions [mm]", "points", "rms [mm]"]
+    assert names.split("  ")[-3:] == ["points", "rms [mm]", "certain"]
     assert set(dashes) == {"-", " "}
     assert [row.split()[:2] for row in rows] == [["0", "rectangle"], ["1", "circle"]]
     assert "-199.5, -149.5" in rows[0]
     assert "200.0 x 100.0" in rows[0]
+    assert [row.split()[-1] for row in rows] == ["yes", "yes"]
 
 
 def test_a_long_list_is_cut_and_says_so():

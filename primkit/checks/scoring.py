@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 
 from ..arguments import ROUNDING, Floats
-from ..evaluation import CENTER_WEIGHT, DIMENSION_WEIGHT, SHAPE_WEIGHT, match
+from ..evaluation import match
+from ..report import CENTER_WEIGHT, DIMENSION_WEIGHT, SHAPE_WEIGHT
 from ..shapes import Circle, Polygon, Shape
 from ..world import random_world
 from .answer import Check, Fault

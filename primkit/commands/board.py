@@ -17,9 +17,9 @@ from ..table import count
 from .words import Parser, millimetres, path, say, share, whole
 
 if TYPE_CHECKING:
-    from ..evaluation import Report
     from ..lidar import Lidar
     from ..measure import Detection
+    from ..report import Report
     from ..study import Run
     from ..world import Style, World
 

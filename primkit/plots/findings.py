@@ -21,9 +21,9 @@ from matplotlib.patches import Patch
 from matplotlib.typing import ColorType
 
 from ..arguments import Floats, check_type
-from ..evaluation import Match, Report
 from ..measure import Detection
 from ..palette import GREY, INK, KIND_COLORS
+from ..report import Match, Report
 from ..seen import is_seen
 from ..shapes import Circle, Polygon, Shape
 from ..table import count

@@ -17,10 +17,10 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from ..arguments import as_points, check_type
-from ..evaluation import Report
 from ..formats import StrPath, write_atomically
 from ..lidar import Scans
 from ..measure import Detection
+from ..report import Report
 from ..shapes import Shape
 from ..table import count
 from ..world import World

@@ -23,13 +23,14 @@ import numpy as np
 
 from ..arguments import Floats
 from ..circles import find_circle
-from ..evaluation import CENTER_WEIGHT, DIMENSION_WEIGHT, PAPER_DIGITS, PAPER_TOLERANCE, SHAPE_WEIGHT, evaluate
+from ..evaluation import PAPER_TOLERANCE, evaluate
 from ..formats import published_suite
 from ..grid import Grid
 from ..lidar import scan
 from ..lines import find_lines
 from ..paper import kind_by_lines, measure_as_published, published_values
 from ..pipeline import PAPER, find_shapes
+from ..report import CENTER_WEIGHT, DIMENSION_WEIGHT, PAPER_DIGITS, SHAPE_WEIGHT
 from ..robot import published_poses, teleport_poses
 from ..segmentation import kmeans
 from ..shapes import Circle, Polygon, Shape

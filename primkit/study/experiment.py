@@ -32,11 +32,12 @@ from typing import Literal
 import numpy as np
 
 from ..arguments import Floats
-from ..evaluation import Report, evaluate
+from ..evaluation import evaluate
 from ..grid import Grid
 from ..lidar import Lidar, Scans, scan
 from ..measure import Detection, detection
 from ..pipeline import Settings, find_shapes
+from ..report import Report
 from ..robot import published_poses, teleport_poses, waypoints
 from ..shapes import Circle, Kind
 from ..world import World

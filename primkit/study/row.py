@@ -17,7 +17,7 @@ from itertools import islice
 from typing import Literal
 
 from ..arguments import ROUNDING
-from ..evaluation import CENTER_WEIGHT, DIMENSION_WEIGHT, SHAPE_WEIGHT
+from ..report import CENTER_WEIGHT, DIMENSION_WEIGHT, SHAPE_WEIGHT
 from ..shapes import Kind
 
 Movement = Literal["automatic", "manual"]

@@ -15,11 +15,12 @@ from functools import cache
 import numpy as np
 
 from ..arguments import ROUNDING, Floats
-from ..evaluation import CENTER_WEIGHT, GATE, SHAPE_WEIGHT
+from ..evaluation import GATE
 from ..formats import paper_suite
 from ..lidar import Lidar
 from ..palette import BLUE, GREY, INK, PALE, SKY, VERMILION
 from ..pipeline import PAPER, ROBUST
+from ..report import CENTER_WEIGHT, SHAPE_WEIGHT
 from ..study import Experiment, Row, perform
 from ..world import World
 from .drawing import Frame, picture, side_by_side
