@@ -26,6 +26,7 @@ from .report import Report as Report
 from .driving import explore as explore, Exploration as Exploration
 from .driving.scripted import scripted_route as scripted_route
 from .formats import load_world as load_world, save_world as save_world
+from .formats import load_found as load_found, save_found as save_found
 from .formats import load_scans as load_scans, save_scans as save_scans
 from .formats import Drive as Drive, record_drive as record_drive, load_drive as load_drive, save_drive as save_drive
 from .formats import paper_suite as paper_suite, published_suite as published_suite, scripted_drives as scripted_drives

@@ -101,9 +101,15 @@ class Rest:
     def __repr__(self) -> str:
         """Return what there is in one sentence; nothing where all is shapes."""
         walls, things = self._walls(), self._things()
-        strays = f"{count(self.n_strays, 'stray')}, {self.n_lost or 'none'} of them on an outline" * bool(self.n_strays)
+        strays = f"{count(self.n_strays, 'stray')}, {self._lost()}" * bool(self.n_strays)
         said = "; ".join(filter(None, (walls, things, strays)))
         return f"Beside the shapes: {said}." if said else ""
+
+    def _lost(self) -> str:
+        """Return how many of the strays lie on something."""
+        if self.n_strays == 1:
+            return "on an outline" if self.n_lost else "on no outline"
+        return f"{self.n_lost or 'none'} of them on an outline"
 
     def _walls(self) -> str:
         """Return how right the walls are; nothing where there are none and none was found."""

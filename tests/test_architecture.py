@@ -35,7 +35,7 @@ ORDER = (
 KNOWS_ONLY = {
     "raycast": ("arguments", "shapes", "world"),  # exact rays
     "robust": ("arguments", "shapes", "segmentation", "ransac", "lines", "circles", "seen"),  # no grid, LiDAR, pipeline
-    "formats": ("arguments", "shapes", "show", "world", "robot", "lidar"),  # no estimator
+    "formats": ("arguments", "shapes", "show", "world", "robot", "lidar", "measure", "found"),  # only what is returned
 }
 # Rooms that others must not know, though these stand above them; and rooms that nobody knows but these.
 KNOWS_NO = {"widgets": ("plots",), "scene": ("plots", "widgets"), "checks": ("plots", "widgets", "scene")}

@@ -14,7 +14,7 @@ import pytest
 
 import primkit.study
 from primkit.__main__ import main
-from primkit.formats import load_world, save_world
+from primkit.formats import load_found, load_world, save_world
 from primkit.shapes import Circle, Polygon
 from primkit.study import JOURNAL, repeat
 from primkit.world import World, random_world
@@ -152,10 +152,8 @@ def test_map_as_a_newcomer_sees_it(here, capsys):
     assert rest[1].startswith("true shape  found as")
     assert "weighted accuracy 1.000 = 0.4 x shape 1.000 + 0.3 x centre 1.000" in out
     wrote = ", ".join(str(Path("out", name)) for name in ("map.png", "found.geojson", "truth.geojson"))
-    assert rest[-2:] == [
-        f"Wrote  {wrote}",
-        f"Next   open {Path('out', 'map.png')} to see it all; in Python, primkit.load_world reads the two maps.",
-    ]
+    reads = "in Python, primkit.load_found and load_world read the two maps."
+    assert rest[-2:] == [f"Wrote  {wrote}", f"Next   open {Path('out', 'map.png')} to see it all; {reads}"]
     assert err == ""
     assert sorted(path.name for path in (here / "out").iterdir()) == ["found.geojson", "map.png", "truth.geojson"]
 
@@ -165,13 +163,29 @@ def test_map_files_can_be_read_back():
     assert load_world("a/b/truth.geojson") == random_world(2, rng=3)
     found = load_world("a/b/found.geojson")
     assert sorted(shape.kind for shape in found.shapes) == ["circle", "pentagon"]
-    for feature in json.loads(Path("a/b/found.geojson").read_bytes())["features"]:
+    again = load_found("a/b/found.geojson")
+    assert [one.shape for one in again] == list(found.shapes)
+    assert all(one.certain for one in again)
+    features = json.loads(Path("a/b/found.geojson").read_bytes())["features"]
+    assert [feature["properties"]["kind"] for feature in features[2:]] == ["strays"] * bool(len(again.strays))
+    for feature in features[:2]:
         known = feature["properties"]
         assert 0 < known["rms"] < 0.003
         assert known["n_points"] > 50
         assert known["margin"] > 10
         assert len(known["seen"]) == (1 if known["kind"] == "circle" else 5)
     assert Path("a/b/map.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_map_of_a_walled_board_tells_all_there_is(capsys):
+    save_world(World([Circle((-0.2, 0.1), 0.08)], walls=True), "room.geojson")
+    assert main(["map", "--map", "room.geojson", "--spurious", "0.01"]) == 0
+    out = capsys.readouterr().out
+    assert re.search(r"\nFound  1 shape, 4 walls, \d+ strays with the settings ROBUST\n", out)
+    assert re.search(r"\nBeside the shapes: 4 walls, all right; \d+ strays, (none|\d+) of them on an outline\.\n", out)
+    again = load_found("out/found.geojson")
+    assert len(again.walls) == 4
+    assert load_world("out/found.geojson").shapes == tuple(one.shape for one in again)
 
 
 @pytest.mark.usefixtures("maps")

@@ -75,7 +75,7 @@ SENTENCES = {
     "a stray on a wall": (
         Found(strays=np.array([(0.4, -0.499)])),
         pk.World(walls=True),
-        "Beside the shapes: no walls, 4 of the board's 4 missed; 1 stray, 1 of them on an outline.",
+        "Beside the shapes: no walls, 4 of the board's 4 missed; 1 stray, on an outline.",
     ),
     "strays on nothing": (
         Found(strays=np.array([(0.4, 0.4), (0.3, 0.3)])),

@@ -7,18 +7,14 @@ Out: a report on the screen, a picture and maps in a folder; or one map in a fil
 from __future__ import annotations
 
 import argparse
-import warnings
-from collections.abc import Sequence
-from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 from ..table import count
 from .words import Parser, millimetres, path, say, share, whole
 
 if TYPE_CHECKING:
     from ..lidar import Lidar
-    from ..measure import Detection
     from ..report import Report
     from ..study import Run
     from ..world import Style, World
@@ -119,43 +115,30 @@ def _tell(world: World, lidar: Lidar, done: Run, method: str) -> None:
     where = "inside a shape or beside a wall" if world.walled else f"inside a shape{f': {places} m' if places else ''}"
     say(f"Robot  {n_poses} way-points, {len(skipped)} skipped {where}")
     say(f"LiDAR  {done.scans.hits.sum()} hits on {len(done.points)} cells of 1 mm; range noise {noise:g} mm")
-    say(f"Found  {count(len(done.found), 'shape')} with the settings {method}{number}")
+    found = ", ".join(filter(None, (count(len(done.found), "shape"), done.found.rest())))
+    say(f"Found  {found} with the settings {method}{number}")
     robot = f"{done.robot_time:.1f} s (all way-points x {lidar.period:g} s)"
     say(f"Time   robot {robot}, computing {done.computing_time:.2f} s")
 
 
 def _write(out: Path, world: World, done: Run, report: Report, seed: int) -> None:
     """Write the picture and the two maps, and say what to open."""
-    from ..arguments import LikelyWrong
-    from ..formats import save_world
+    from ..formats import save_found, save_world
     from ..plots import plot_story, save_figure
     from ..segmentation import segment
-    from ..world import World
 
     method: Literal["link", "kmeans"] = "link" if done.told is None else "kmeans"
     labels = segment(done.points, done.told, method=method, rng=seed)
     save_figure(plot_story(world, done.scans, done.points, labels, done.found, report), out / "map.png")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LikelyWrong)  # that what was found lies on each other is no slip of the user's
-        found = World([d.shape for d in done.found], world.size)
-    save_world(found, out / "found.geojson", properties=_describe(done.found))
+    save_found(done.found, out / "found.geojson", size=world.size)
     save_world(world, out / "truth.geojson")
     say(f"Wrote  {out / 'map.png'}, {out / 'found.geojson'}, {out / 'truth.geojson'}")
-    say(f"Next   open {out / 'map.png'} to see it all; in Python, primkit.load_world reads the two maps.")
+    say(f"Next   open {out / 'map.png'} to see it all; in Python, primkit.load_found and load_world read the two maps.")
 
 
 def _census(world: World) -> str:
     kinds = ", ".join(shape.kind for shape in world.shapes)
     return count(len(world.shapes), "shape") + (f": {kinds}" if kinds else "")
-
-
-def _describe(found: Sequence[Detection]) -> list[dict[str, Any]]:
-    """Return what is known of each found shape beside its outline; metres, and None for what is not finite."""
-    known = []
-    for d in found:
-        rms, margin = (value if isfinite(value) else None for value in (d.rms, d.margin))
-        known.append({"rms": rms, "margin": margin, "n_points": len(d.points), "seen": d.seen})
-    return known
 
 
 # --- primkit make-map ---------------------------------------------------------------------------------------

@@ -20,6 +20,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from math import isfinite
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -82,14 +83,8 @@ def save_world(world: World, path: StrPath, *, properties: Sequence[Mapping[str,
     features = []
     for number, (shape, extra) in enumerate(zip(world.shapes, extras, strict=True), start=1):
         with naming(f"{path.name}, feature {number}"):
-            features.append(_feature_text(shape, extra))
-    listed = "[\n" + ",\n".join(features) + "\n  ]" if features else "[]"
-    walls = '  "walls": true,\n' * world.walled
-    text = f'{{\n  "type": "FeatureCollection",\n  "size": {world.size!r},\n{walls}  "features": {listed}\n}}\n'
-    data = text.encode()
-    with naming(path.name):
-        limit(len(data), MAP_LIMIT, "must be at most {} bytes")
-    write_atomically(path, data)
+            features.append(shape_text(shape, extra))
+    write_map(path, {"size": world.size} | ({"walls": True} if world.walled else {}), features)
 
 
 def load_world(path: StrPath) -> World:
@@ -98,7 +93,8 @@ def load_world(path: StrPath) -> World:
     A Polygon becomes a ``Polygon`` (first corner first, turned counter-clockwise), a Point with the property ``radius``
     a ``Circle``. The board's size is the member ``size`` beside the features, 1 m when there is none; it has walls when
     the member ``walls`` is true. All other properties are passed over, ``kind`` too. So is a position's third number,
-    the height that GeoJSON allows. Holes and Multi-geometries have no shape here.
+    the height that GeoJSON allows, and what ``save_found`` writes beside shapes. Holes and Multi-geometries have no
+    shape here.
 
     Raises ValueError if the file is not a map: the sentence names the file and the feature, counted from 1; OSError if
     there is no such file (``FileNotFoundError``), or it cannot be read.
@@ -113,20 +109,19 @@ def load_world(path: StrPath) -> World:
     (Polygon([(0, 0), (1, 0), (0, 1)]),)
     """
     path = as_path(path, MAP_ENDINGS, "a map")
-    data = bounded_read(path, MAP_LIMIT)
+    document, features = read_map(path)
     with naming(path.name):
-        document = _parsed(data)
-        features = _features(document)
         size = document.get("size", 1.0)
         if not isinstance(size, float):
-            raise ValueError(f"size must be a finite number > 0, got {_shown(size)}")
+            raise ValueError(f"size must be a finite number > 0, got {shown(size)}")
         walls = document.get("walls", False)
         if not isinstance(walls, bool):
-            raise ValueError(f"walls must be true or false, got {_shown(walls)}")
+            raise ValueError(f"walls must be true or false, got {shown(walls)}")
     shapes = []
     for number, feature in enumerate(features, start=1):
         with naming(f"{path.name}, feature {number}"):
-            shapes.append(_shape_of(feature))
+            if not _is_no_shape(feature):
+                shapes.append(shape_of(feature))
     with naming(path.name):
         return World(shapes, size, walls=walls)
 
@@ -134,7 +129,23 @@ def load_world(path: StrPath) -> World:
 # From shapes to text.
 
 
-def _feature_text(shape: Shape, extra: Mapping[str, Any]) -> str:
+def write_map(path: Path, members: Mapping[str, Any], features: Sequence[str]) -> None:
+    """Write the features of a map, each as text, with members beside them."""
+    listed = "[\n" + ",\n".join(features) + "\n  ]" if features else "[]"
+    beside = "".join(f'  "{name}": {as_json(value)},\n' for name, value in members.items())
+    data = f'{{\n  "type": "FeatureCollection",\n{beside}  "features": {listed}\n}}\n'.encode()
+    with naming(path.name):
+        limit(len(data), MAP_LIMIT, "must be at most {} bytes")
+    write_atomically(path, data)
+
+
+def feature_text(properties: Mapping[str, Any], geometry: str) -> str:
+    """Return a GeoJSON Feature; ``geometry`` is the text that follows ``"type": ``."""
+    told = as_json(properties)
+    return f'    {{"type": "Feature",\n     "properties": {told},\n     "geometry": {{"type": {geometry}}}}}'
+
+
+def shape_text(shape: Shape, extra: Mapping[str, Any]) -> str:
     """Return one shape as a GeoJSON Feature, one corner on a line."""
     if not isinstance(extra, Mapping):
         raise ValueError(f"properties must be a dict, got {type(extra).__name__}")
@@ -143,13 +154,12 @@ def _feature_text(shape: Shape, extra: Mapping[str, Any]) -> str:
     own: dict[str, Any] = {"kind": shape.kind}
     if isinstance(shape, Circle):
         own["radius"] = shape.radius
-        geometry = f'"Point", "coordinates": {_json(shape.center)}'
+        geometry = f'"Point", "coordinates": {as_json(shape.center)}'
     else:
         ring = [*shape.vertices, shape.vertices[0]]  # GeoJSON repeats the first corner
-        corners = ",\n".join(f"       {_json(corner)}" for corner in ring)
+        corners = ",\n".join(f"       {as_json(corner)}" for corner in ring)
         geometry = f'"Polygon", "coordinates": [[\n{corners}\n     ]]'
-    properties = _json({**own, **extra})
-    return f'    {{"type": "Feature",\n     "properties": {properties},\n     "geometry": {{"type": {geometry}}}}}'
+    return feature_text({**own, **extra}, geometry)
 
 
 def _check_property(key: Any, value: Any) -> None:
@@ -157,13 +167,14 @@ def _check_property(key: Any, value: Any) -> None:
     if not isinstance(key, str) or key in ("kind", "radius"):
         raise ValueError(f"a property's name must be a text other than kind and radius, got {short(key)}")
     try:
-        _json({key: value}).encode()  # half a surrogate pair is no text
+        as_json({key: value}).encode()  # half a surrogate pair is no text
     except (TypeError, ValueError, RecursionError):
         rule = "finite numbers, texts, true, false or None"
-        raise ValueError(f"the property {key!r} must hold {rule}, got {_shown(value)}") from None
+        raise ValueError(f"the property {key!r} must hold {rule}, got {shown(value)}") from None
 
 
-def _json(value: Any) -> str:
+def as_json(value: Any) -> str:
+    """Return a value as JSON; NumPy's numbers and arrays will do."""
     return json.dumps(value, ensure_ascii=False, allow_nan=False, default=_without_numpy)
 
 
@@ -174,6 +185,22 @@ def _without_numpy(value: Any) -> Any:
 
 
 # From bytes to shapes.
+
+
+def read_map(path: Path) -> tuple[dict[str, Any], list[Any]]:
+    """Return a file's JSON object, every number in it as a float, and its features."""
+    data = bounded_read(path, MAP_LIMIT)
+    with naming(path.name):
+        document = _parsed(data)
+        return document, _features(document)
+
+
+def _is_no_shape(feature: Any) -> bool:
+    """Tell whether a Feature is what ``save_found`` writes beside shapes."""
+    match feature:
+        case {"type": "Feature", "properties": {"kind": kind}, "geometry": {"type": type_}}:
+            return (kind, type_) in (("wall", "LineString"), ("other", "LineString"), ("strays", "MultiPoint"))
+    return False
 
 
 def _parsed(data: bytes) -> dict[str, Any]:
@@ -190,7 +217,7 @@ def _parsed(data: bytes) -> dict[str, Any]:
     except (RecursionError, MemoryError):
         raise ValueError("must be nested a few brackets deep, got more than can be read") from None
     if not isinstance(document, dict):
-        raise ValueError(f"must be a GeoJSON object, got {_shown(document)}")
+        raise ValueError(f"must be a GeoJSON object, got {shown(document)}")
     return document
 
 
@@ -202,18 +229,18 @@ def _features(document: dict[str, Any]) -> list[Any]:
     """Return the features of a collection; one Feature or geometry alone counts as a collection of one."""
     kind = document.get("type")
     if not isinstance(kind, str):
-        raise ValueError(f'must be GeoJSON with a text as its "type", got {_shown(kind)}')
+        raise ValueError(f'must be GeoJSON with a text as its "type", got {shown(kind)}')
     if kind == "Feature":
         return [document]
     if kind != "FeatureCollection":
         return [{"type": "Feature", "geometry": document}]
     features = document.get("features")
     if not isinstance(features, list):
-        raise ValueError(f"features must be a list, got {_shown(features)}")
+        raise ValueError(f"features must be a list, got {shown(features)}")
     return features
 
 
-def _shape_of(feature: Any) -> Shape:
+def shape_of(feature: Any) -> Shape:
     """Return the shape that a Feature stands for."""
     match feature:
         case {"type": "Feature", "geometry": {"type": "Polygon"} as geometry}:
@@ -230,11 +257,11 @@ def _shape_of(feature: Any) -> Shape:
 def _polygon_of(rings: Any) -> Polygon:
     """Return the polygon inside one closed ring."""
     if not isinstance(rings, list) or len(rings) != 1:
-        got = f"{len(rings)} rings" if isinstance(rings, list) else _shown(rings)
+        got = f"{len(rings)} rings" if isinstance(rings, list) else shown(rings)
         raise ValueError(f"a Polygon must have one ring and no holes, got {got}")
     if not isinstance(rings[0], list) or not rings[0]:
-        raise ValueError(f"a ring must be a list of positions, got {_shown(rings[0])}")
-    ring = np.array([_position(position) for position in rings[0]])
+        raise ValueError(f"a ring must be a list of positions, got {shown(rings[0])}")
+    ring = np.array([position_of(position) for position in rings[0]])
     # Shapes of any size are judged by Polygon alone, so overflow on the way to its verdict is no matter here.
     with np.errstate(over="ignore", invalid="ignore"):
         if np.hypot(*(ring[0] - ring[-1])) > SAME_CORNER:
@@ -249,28 +276,28 @@ def _circle_of(center: Any, properties: Any) -> Circle:
         raise ValueError('a Point must have the property "radius" to be a circle, got none')
     radius = properties["radius"]
     if not isinstance(radius, float):  # Circle would take the text "0.1" and true for numbers
-        raise ValueError(f"radius must be a finite number > 0, got {_shown(radius)}")
-    return Circle(_position(center), radius)
+        raise ValueError(f"radius must be a finite number > 0, got {shown(radius)}")
+    return Circle(position_of(center), radius)
 
 
-def _position(position: Any) -> tuple[float, float]:
+def position_of(position: Any) -> tuple[float, float]:
     """Return x and y of a GeoJSON position; its height, if it has one, is dropped."""
     listed = isinstance(position, list) and len(position) in (2, 3)
     if not listed or not all(isinstance(number, float) and isfinite(number) for number in position):
-        raise ValueError(f"a position must be two or three finite numbers, got {_shown(position)}")
+        raise ValueError(f"a position must be two or three finite numbers, got {shown(position)}")
     x, y = position[:2]
     return x, y
 
 
 def _shown_type(value: Any) -> str:
     """Return the type that an object claims, or else the value, as a few words."""
-    return _shown(value.get("type") if isinstance(value, dict) else value)
+    return shown(value.get("type") if isinstance(value, dict) else value)
 
 
-def _shown(value: Any) -> str:
+def shown(value: Any) -> str:
     """Return a JSON value as a few words for an error message, however large or deep it is."""
     if isinstance(value, list) and 0 < len(value) <= 4 and not any(isinstance(v, (list, dict)) for v in value):
-        return f"[{', '.join(map(_shown, value))}]"
+        return f"[{', '.join(map(shown, value))}]"
     if isinstance(value, list):
         return f"a list of {len(value)}"
     if isinstance(value, str):

@@ -33,9 +33,10 @@ import numpy as np
 
 from ..arguments import Floats
 from ..evaluation import evaluate
+from ..found import Found
 from ..grid import Grid
 from ..lidar import Lidar, Scans, scan
-from ..measure import Detection, detection
+from ..measure import detection
 from ..pipeline import Settings, find_shapes
 from ..report import Report
 from ..robot import published_poses, teleport_poses, waypoints
@@ -115,7 +116,7 @@ class Run:
         The grid's points, metres.
     told : int or None
         How many shapes the method was told that there are.
-    found : list of Detection
+    found : Found
         What it found.
     robot_time, computing_time : float
         Seconds; see the module's notes.
@@ -124,7 +125,7 @@ class Run:
     scans: Scans
     points: Floats
     told: int | None
-    found: list[Detection]
+    found: Found
     robot_time: float
     computing_time: float
 
@@ -197,13 +198,13 @@ def run(experiment: Experiment) -> Run:
     return Run(scans, points, told, found, robot_time, computing_time)
 
 
-def _find(experiment: Experiment, scans: Scans, rng: np.random.Generator) -> tuple[Floats, int | None, list[Detection]]:
+def _find(experiment: Experiment, scans: Scans, rng: np.random.Generator) -> tuple[Floats, int | None, Found]:
     """Return the grid's points, the number of shapes that was told, and what the method found."""
     world, settings = experiment.world, experiment.settings
     if isinstance(settings, Oracle):
         points, owners = told_points(world, scans, experiment.lidar)
         fits = enumerate(oracle_fit(world, points, owners))
-        found = [detection(fit, points[owners[:, 0] == i], np.inf) for i, fit in fits if fit is not None]
+        found = Found(detection(fit, points[owners[:, 0] == i], np.inf) for i, fit in fits if fit is not None)
         return points, len(world.shapes), found
     grid = Grid()
     grid.add(scans)
