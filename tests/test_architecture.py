@@ -35,7 +35,7 @@ ORDER = (
 KNOWS_ONLY = {
     "raycast": ("arguments", "shapes", "world"),  # exact rays
     "robust": ("arguments", "shapes", "segmentation", "ransac", "lines", "circles", "seen"),  # no grid, LiDAR, pipeline
-    "formats": ("arguments", "shapes", "show", "world", "robot", "lidar", "measure", "found"),  # only what is returned
+    "formats": ("arguments", "shapes", "show", "world", "robot", "lidar", "measure", "found"),  # no pipeline
 }
 # Rooms that others must not know, though these stand above them; and rooms that nobody knows but these.
 KNOWS_NO = {"widgets": ("plots",), "scene": ("plots", "widgets"), "checks": ("plots", "widgets", "scene")}
@@ -290,7 +290,7 @@ BROKEN = {
     "an engine that knows the grid": (knows_too_much, "robust.scatter", "from ..grid import Grid"),
     "an engine that knows the sensor": (knows_too_much, "robust.scatter", "from ..lidar import Lidar"),
     "an engine that knows the pipeline": (knows_too_much, "robust.regroup", "from .. import pipeline"),
-    "files that know the estimator": (knows_too_much, "formats.maps", "from ..measure import Detection"),
+    "files that know the estimator": (knows_too_much, "formats.maps", "from ..pipeline import find_shapes"),
     "files that know the engine": (knows_too_much, "formats.scans", "from ..robust.evidence import Candidate"),
     "a scene that knows the sliders": (knows_too_much, "scene.page", "from ..widgets.slider import Slider"),
     "sliders that know the scene": (knows_too_much, "widgets.slider", "from ..scene import drive_scene"),
@@ -342,6 +342,7 @@ SOUND = {
     "other libraries": (wrong_way, "grid", "import numpy as np\nfrom pipeline import x"),
     "the contents name all": (wrong_way, "__init__", "from . import plots, shapes"),
     "the command line uses all": (wrong_way, "__main__", "import primkit as pk\nfrom . import study"),
+    "files that know what was found": (knows_too_much, "formats.found_maps", "from ..found import Found"),
     "files that know the sensor": (knows_too_much, "formats.scans", "from ..lidar import Scans"),
     "a room that knows itself": (knows_too_much, "course.reporting", "from .course import Course"),
     "commands that know the course": (knows_too_much, "commands.teach", "from ..course.course import Course"),
