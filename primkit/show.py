@@ -41,13 +41,22 @@ def census(shapes: Sequence[Shape]) -> str:
     return count(len(kinds), "shape") + (f": {told}" if told else "")
 
 
+def digits_of_mm(resolution: float) -> int:
+    """Return how many digits after the point of a millimetre tell a tenth of a cell of this side, metres.
+
+    >>> digits_of_mm(0.001), digits_of_mm(0.01), digits_of_mm(0.0005)
+    (1, 0, 2)
+    """
+    return max(0, math.ceil(1 - math.log10(1000 * resolution) - 1e-9))
+
+
 def lengths_in_mm(lengths: Iterable[float], resolution: float = 0.001) -> list[str]:
     """Return lengths, metres, as texts, millimetres, to a tenth of a cell of this side, metres.
 
-    >>> lengths_in_mm([0.1, -1e-9]), lengths_in_mm([0.1], 0.01), lengths_in_mm([0.1], 0.0005)
-    (['100.0', '0.0'], ['100'], ['100.00'])
+    >>> lengths_in_mm([0.1, -1e-9]), lengths_in_mm([0.1], 0.01)
+    (['100.0', '0.0'], ['100'])
     """
-    digits = max(0, math.ceil(1 - math.log10(1000 * resolution) - 1e-9))
+    digits = digits_of_mm(resolution)
     return [f"{round(1000 * length, digits) + 0.0:.{digits}f}" for length in lengths]  # + 0.0: no "-0.0"
 
 

@@ -1,6 +1,8 @@
 """Pictures: what is drawn, that it can be told apart and read, and that drawing leaves nothing behind."""
 
 import pickle
+import re
+from dataclasses import replace
 from functools import cache
 from itertools import combinations
 from pathlib import Path
@@ -18,10 +20,11 @@ from matplotlib.image import imread
 
 from primkit.driving import explore
 from primkit.evaluation import evaluate
+from primkit.found import Found
 from primkit.grid import Grid
 from primkit.lidar import Lidar, Scans, scan
-from primkit.measure import Detection
-from primkit.palette import CLUSTER_COLORS, CLUSTER_MARKERS, KIND_COLORS, KIND_INKS, KIND_MARKERS
+from primkit.measure import Detection, Wall
+from primkit.palette import CLUSTER_COLORS, CLUSTER_MARKERS, GREY, KIND_COLORS, KIND_INKS, KIND_MARKERS
 from primkit.pipeline import find_shapes
 from primkit.plots import (
     labels,
@@ -41,6 +44,9 @@ from primkit.segmentation import segment
 from primkit.shapes import KINDS, PRIMITIVES, Circle, Polygon
 from primkit.world import World, random_world
 from tests.helpers import exactly
+from tests.test_account import seen_on
+from tests.test_scale import board
+from tests.test_unknown import CURVED
 
 PICTURES = Path(__file__).resolve().parent.parent / "data" / "pictures"
 
@@ -377,7 +383,7 @@ def test_unseen_stretches_are_dashed(ax):
     side = square(-0.1, -0.1, 0.2)
     points = side.outline(400)
     points = points[points[:, 1] < -0.02]  # the lower half of the square
-    half = find_shapes(Circle((0.3, 0.3), 0.06).outline(200)[:120], rng=0)[0]
+    half = replace(find_shapes(Circle((0.3, 0.3), 0.06).outline(200)[:120], rng=0)[0], choice=None)
     seen = Detection(side, points, 0.0, seen=(1.0, 0.46, 0.0, 0.46))
     plot_found([seen, half], ax=ax)
     dashed = [line for line in ax.lines if line.is_dashed()]
@@ -385,6 +391,119 @@ def test_unseen_stretches_are_dashed(ax):
     assert len(dashed) == len(solid) == 2
     for line, item in zip(solid, (seen, half), strict=True):
         assert np.isfinite(line.get_xdata()).mean() == pytest.approx(np.mean(item.seen), abs=0.02)
+
+
+def legend_of(ax):
+    return [text.get_text() for text in ax.get_legend().get_texts()]
+
+
+ELLIPSE = Polygon(CURVED["ellipse 2"]).moved((0.25, 0.2), 0.4)
+ROOM = World([Circle((-0.25, 0.2), 0.08), square(-0.3, -0.3, 0.15), ELLIPSE], walls=True)
+
+
+@cache
+def found_in_the_room():
+    return find_shapes(seen_on(ROOM, spurious=0.01), rng=0)
+
+
+def test_a_shape_that_is_not_certain_is_dotted_and_has_a_question_mark(ax):
+    ring = find_shapes(Circle((0.3, 0.3), 0.06).outline(200)[:120], rng=0)
+    assert [one.certain for one in ring] == [False]
+    plot_found(ring, ax=ax)
+    dashed, dotted = [line for line in ax.lines if line.is_dashed()]
+    assert np.isfinite(dotted.get_xdata()).mean() == pytest.approx(ring[0].seen[0], abs=0.02)
+    assert np.isfinite(dashed.get_xdata()).mean() == pytest.approx(1 - ring[0].seen[0], abs=0.02)
+    assert [line.get_marker() for line in ax.lines if len(line.get_xdata()) == 1] == ["$?$"]
+    assert [text.get_text() for text in shown_labels(ax)] == ["circle?"]
+    report = evaluate(ring, World([Circle((0.3, 0.3), 0.06)]))
+    ax.clear()
+    plot_found(ring, None, ax, report)
+    assert shown_labels(ax)[0].get_text().startswith("circle?\ncentre")
+
+
+def test_walls_things_and_strays_are_drawn(ax):
+    found = found_in_the_room()
+    plot_found(found, ROOM, ax)
+    drawn = [line.get_xydata() for line in ax.lines]
+    for wall in found.walls:
+        assert any(np.array_equal(line, np.array([wall.start, wall.end])) for line in drawn)
+    (strays,) = [line for line in drawn if np.array_equal(line, found.strays)]
+    assert len(strays) > 10
+    (thing,) = [line for line in ax.lines if to_hex(line.get_color()) == GREY.lower() and line.is_dashed()]
+    np.testing.assert_array_equal(thing.get_xydata()[:-1], found.others[0].outline)
+    assert "of no kind" in [text.get_text() for text in shown_labels(ax)]
+    n = len(found.strays)
+    assert title(ax) == f"2 shapes found; 4 walls, 1 thing of no kind, {n} strays"
+
+
+def test_a_wall_has_a_ring_where_its_end_was_seen(ax):
+    ends = np.array([(-0.2, 0.0), (0.3, 0.1)])
+    for seen in ((True, False), (False, False), (False, True)):
+        ax.clear()
+        plot_found(Found(walls=[Wall(*ends, ends, 0.0, seen)]), ax=ax)
+        rings = [line.get_xydata() for line in ax.lines if line.get_marker() == "o" and line.get_linestyle() == "None"]
+        np.testing.assert_array_equal(np.vstack(rings), ends[np.array(seen)])
+
+
+def test_what_was_seen_of_no_kind_is_no_mere_miss(ax):
+    found = found_in_the_room()
+    plot_found(found, ROOM, ax, evaluate(found, ROOM))
+    texts = [text.get_text() for text in shown_labels(ax)]
+    assert texts[-1] == "polygon:\nfound of no kind"
+    assert "of no kind" not in texts
+    assert title(ax).startswith("2 of 3 shapes right, 1 missed; 4 walls, 1 thing of no kind, ")
+
+
+def test_the_legend_shows_only_what_there_is(ax):
+    half = replace(find_shapes(Circle((0.3, 0.3), 0.06).outline(200)[:120], rng=0)[0], choice=None)
+    found = found_in_the_room()
+    cases = [
+        (([],), []),
+        ((FOUR_KINDS.shapes,), ["found"]),
+        ((FOUR_KINDS.shapes, FOUR_KINDS), ["found", "truth"]),
+        (([half],), ["found", "found, no point near"]),
+        ((Found(walls=found.walls),), ["wall"]),
+        ((Found(strays=found.strays), ROOM), ["stray", "truth"]),
+        ((found, ROOM), ["found", "wall", "stray", "truth"]),
+    ]
+    for shown, words in cases:
+        ax.clear()
+        plot_found(*shown, ax=ax)
+        assert legend_of(ax) == words
+
+
+def test_a_full_legend_is_no_wider_than_the_board(ax):
+    found = found_in_the_room()
+    half = replace(find_shapes(Circle((0.3, 0.3), 0.06).outline(200)[:120], rng=0)[0], choice=None)
+    plot_found(Found([*found, half], found.walls, found.others, found.strays), ROOM, ax)
+    ax.figure.canvas.draw()
+    assert len(legend_of(ax)) == 5
+    assert ax.get_legend().get_window_extent().width <= ax.get_window_extent().width
+
+
+def test_without_a_world_all_that_was_found_is_in_the_picture(ax):
+    far = np.array([(-3.0, 0.0), (0.0, 2.5)])
+    plot_found(Found(walls=[Wall(*far, far, 0.0)], strays=np.array([(1.7, -2.0)])), ax=ax)
+    assert ax.get_xlim()[0] < -3 < 1.7 < ax.get_xlim()[1]
+    assert ax.get_ylim()[0] < -2 < 2.5 < ax.get_ylim()[1]
+
+
+@pytest.mark.parametrize(("k", "unit"), [(10, "m"), (0.1, "cm"), (0.01, "mm")])
+def test_a_board_of_another_size_has_its_own_units(k, unit, ax):
+    """Ticks are round in m, cm or mm; errors have a tenth of a cell; seen is what lies within 12 cells."""
+    world, grid = board(3, 0.0, k)
+    found = find_shapes(grid, rng=0)
+    plot_found(found, world, ax, evaluate(found, world))
+    ax.figure.canvas.draw()
+    assert (ax.get_xlabel(), ax.get_ylabel()) == (f"x [{unit}]", f"y [{unit}]")
+    assert {-5, 0, 5} < {float(tick.get_text().replace("\u2212", "-")) for tick in ax.get_xticklabels()}
+    assert ax.get_xlim()[1] == pytest.approx(world.size * 0.53)
+    assert legend_of(ax) == ["found", "truth"]  # all of every outline was seen
+    assert not any(line.is_dashed() and np.isnan(line.get_xdata()).any() for line in ax.lines)
+    assert re.fullmatch(r"4 shapes found, all within [\d.]+ mm", title(ax))
+    assert float(title(ax).split()[-2]) <= 2 * k
+    plot_found(found, ax=plt.figure().add_subplot())
+    assert plt.gca().get_xlim()[1] == pytest.approx(world.size * 0.53)
 
 
 def test_plain_shapes_have_no_dashes(ax):

@@ -21,14 +21,16 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 from matplotlib.text import Text
 from numpy.typing import NDArray
 
 from ..arguments import Floats
-from ..palette import GREY, KIND_INKS
+from ..palette import GREY
 from ..shapes import Circle, Shape
 from .look import at_each_size, letters, width_of
 
+Label = tuple[str, Shape, str]  # its text, its shape, its colour
 Chosen = dict[int, tuple[int, float]]  # label: its place, and what that costs
 
 # Lengths are shares of the room's larger side, and so are costs: 0.01 is as bad as lying so much farther off.
@@ -130,23 +132,24 @@ class Places:
         return cost + MISPLACED * (crossed | _touch(self.boxes, shapely.STRtree(lines)))
 
 
-def write_labels(ax: Axes, labels: Sequence[tuple[str, Shape]], obstacles: Sequence[Shape], room: Floats) -> None:
-    """Write each text near its shape, in its colour, on free ground; one that finds none is left out.
+def write_labels(ax: Axes, labels: Sequence[Label], obstacles: Sequence[Shape], room: Floats) -> None:
+    """Write each text near its shape, on free ground; one that finds none is left out.
 
     Parameters
     ----------
     ax : Axes
         With its limits set. Labels are placed when it is drawn, and anew when its size has changed.
-    labels : sequence of (str, Circle or Polygon)
-        Each text with its shape.
+    labels : sequence of (str, Circle or Polygon, str)
+        Each text with its shape and its colour.
     obstacles : sequence of Circle and Polygon
         What no label may lie on, beside the labels' own shapes.
     room : array, shape (2, 2)
         The lower left and the upper right corner of what the labels may fill, metres.
     """
-    ground = Ground.of([shape for _, shape in labels], obstacles, room)
+    ground = Ground.of([shape for _, shape, _ in labels], obstacles, room)
     look: dict[str, Any] = {"ha": "center", "va": "center", "zorder": 6, "in_layout": False}
-    texts = [ax.text(0, 0, text, color=KIND_INKS[shape.kind], **look) for text, shape in labels]
+    look["path_effects"] = [withStroke(linewidth=2, foreground="white")]  # strays may lie beneath
+    texts = [ax.text(0, 0, text, color=color, **look) for text, _, color in labels]
     lines = [ax.plot([], [], color=GREY, linewidth=0.8, zorder=5)[0] for _ in labels]
     at_each_size(ax, partial(_arrange, ax, ground, texts, lines))
 

@@ -32,16 +32,18 @@ from matplotlib.typing import ColorType
 from ..arguments import Floats, check_type, short
 
 # Notebooks that were released before take their colours from here.
-from ..palette import BLACK, BLUE, GREY, INK, KIND_COLORS, KIND_MARKERS, ORANGE, VERMILION  # noqa: F401
+from ..palette import BLACK, BLUE, GREY, INK, KIND_COLORS, KIND_MARKERS, ORANGE, PALE, VERMILION  # noqa: F401
 from ..robot import BODY
 from ..shapes import Circle, Shape
 
+UNITS = (("m", 1, 0.25), ("cm", 100, 0.025), ("mm", 1000, 0.0))  # on boards of so many metres and more
 BOARD_MARGIN = 0.03  # of the board's size, left free around it
 LEGEND_BAND = 0.06  # of the board's size, left free above it for a legend
 FULL_WIDTH = 3.5  # inches: in narrower axes all letters are smaller
 LEAST_LETTERS = 5.0  # points
 FIGURE_LETTERS = 9.0  # points: in figures of a fixed size
 LEAST_COLUMNS = 10  # letters: a title is not broken into shorter lines
+LEGEND_LETTERS = (8.5, 7.5, 6.5)  # points: the largest of which the legend is no wider than the axes
 LEGEND_WIDTH = 2.6  # inches: narrower axes have no room for a legend
 
 ROBOT_SIGN: dict[str, Any] = {"marker": "o", "markerfacecolor": "white", "markeredgecolor": INK, "markersize": 7}
@@ -60,22 +62,33 @@ def as_axes(ax: Axes | None) -> Axes:
 
 
 def draw_board(
-    ax: Axes, size: float, points: Floats | None = None, *, legend: bool = False, walls: bool = False
+    ax: Axes,
+    size: float,
+    points: Floats | None = None,
+    *,
+    legend: bool = False,
+    walls: bool = False,
+    faint: bool = False,
 ) -> Floats:
     """Draw the board's edge, or its walls; set limits that hold it, the points, and a band above for a legend.
+
+    Walls are ``faint`` under those that were found. Axes are in m, on a small board in cm or mm.
 
     Returns the lower left and the upper right corner of what holds the board and the points, shape (2, 2), metres.
     """
     half = size / 2
-    edge: dict[str, Any] = {"edgecolor": INK, "linewidth": 4 if walls else 1}
+    edge: dict[str, Any] = {"edgecolor": PALE if walls and faint else INK, "linewidth": 4 if walls else 1}
     ax.add_patch(Rectangle((-half, -half), size, size, facecolor="white", zorder=0.5, **edge))
     inside = np.vstack([[(-half, -half), (half, half)], np.empty((0, 2)) if points is None else points])
     room = np.array([inside.min(axis=0), inside.max(axis=0)])
     (left, low), (right, high) = room + np.array([[-BOARD_MARGIN], [BOARD_MARGIN]]) * size
     ax.set(xlim=(left, right), ylim=(low, high + legend * LEGEND_BAND * (right - left)), aspect="equal")
-    for axis, name in ((ax.xaxis, "x [m]"), (ax.yaxis, "y [m]")):
-        axis.set_label_text(name, fontsize=letters(ax, 10))
+    unit, times = next((unit, times) for unit, times, least in UNITS if size >= least)
+    for axis, name in ((ax.xaxis, "x"), (ax.yaxis, "y")):
+        axis.set_label_text(f"{name} [{unit}]", fontsize=letters(ax, 10))
         axis.set_major_locator(MaxNLocator(5))
+        if times > 1:
+            axis.set_major_formatter(lambda value, _: f"{round(times * value, 6) + 0.0:g}".replace("-", "\u2212"))
     ax.spines[:].set_visible(False)
     ax.tick_params(color=GREY, labelsize=letters(ax, 9))
     return room
@@ -110,7 +123,7 @@ def set_title(ax: Axes, text: str, own: str | None = None) -> None:
     """Set the title, the user's own if there is one, on as many lines as the width of the axes asks for."""
     text = text if own is None else own
     title = ax.set_title("", loc="left", size=max(letters(ax, 11), 8), weight="bold")
-    together = re.sub(r"(\d) (mm|m)\b", "\\1\u00a0\\2", text)  # a number and its unit stay on one line
+    together = re.sub(r"(\d) (\w)", "\\1\u00a0\\2", text)  # a number and its noun stay on one line
     for columns in range(max(len(text), LEAST_COLUMNS), LEAST_COLUMNS - 1, -1):
         title.set_text(textwrap.fill(together, columns).replace("\u00a0", " "))
         if title.get_window_extent().width <= ax.get_window_extent().width:
@@ -141,15 +154,20 @@ def at_each_size(ax: Axes, act: Callable[[], None]) -> None:
 def draw_legend(ax: Axes, handles: Sequence[Artist]) -> None:
     """Explain the lines in the band above the board, where the axes are wide enough for it."""
     spacing = {"handlelength": 1.6, "handletextpad": 0.5, "columnspacing": 1.2, "borderaxespad": 0.0}
-    legend = ax.legend(handles=handles, loc="upper center", ncols=len(handles), frameon=False, fontsize=8.5, **spacing)
+    legend = ax.legend(
+        handles=handles, loc="upper center", ncols=len(handles), frameon=False, fontsize=LEGEND_LETTERS[0], **spacing
+    )
     legend.set_in_layout(False)
     at_each_size(ax, partial(_fit_legend, ax, legend))
 
 
 def _fit_legend(ax: Axes, legend: Legend) -> None:
     legend.set_visible(width_of(ax) >= LEGEND_WIDTH)
-    for text in legend.get_texts():
-        text.set_fontsize(letters(ax, 8.5))
+    for size in LEGEND_LETTERS:
+        for text in legend.get_texts():
+            text.set_fontsize(letters(ax, size))
+        if legend.get_window_extent().width <= ax.get_window_extent().width:
+            break
 
 
 def patch(shape: Shape, **look: Any) -> Patch:

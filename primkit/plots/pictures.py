@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arguments import Floats, as_count, as_points, as_positive, check_type
 from ..lidar import Lidar, Scans
-from ..palette import CLUSTER_COLORS, CLUSTER_MARKERS, GREY, INK, ORANGE, PALE
+from ..palette import CLUSTER_COLORS, CLUSTER_MARKERS, GREY, INK, KIND_INKS, ORANGE, PALE
 from ..raycast import cast_rays
 from ..shapes import Circle
 from ..show import census
@@ -76,7 +76,7 @@ def plot_world(
     for shape in world.shapes:
         draw_center(ax, shape, color)
     set_title(ax, census(world.shapes).capitalize(), title)
-    write_labels(ax, [(shape.kind, shape) for shape in world.shapes], (), room)
+    write_labels(ax, [(shape.kind, shape, KIND_INKS[shape.kind]) for shape in world.shapes], (), room)
     return ax
 
 
