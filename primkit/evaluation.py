@@ -138,8 +138,6 @@ def match(
     >>> match([a], [])
     []
     """
-    from scipy.optimize import linear_sum_assignment
-
     gate = as_positive(gate, "gate", zero=True)
     ours, theirs = [_as_shape(item) for item in found], [_as_shape(item) for item in true]
     if not ours or not theirs:
@@ -147,6 +145,10 @@ def match(
     offset = np.array([f.centroid for f in ours])[:, None] - np.array([t.centroid for t in theirs])
     distance = np.hypot(offset[..., 0], offset[..., 1])
     allowed = distance <= gate + ROUNDING
+    if allowed.sum(axis=0).max() <= 1 and allowed.sum(axis=1).max() <= 1:  # nobody has a choice
+        return sorted(((int(f), int(t)) for f, t in np.argwhere(allowed)), key=lambda p: p[1])
+    from scipy.optimize import linear_sum_assignment  # only now: it takes a while to load
+
     # A pair that is not allowed costs more than all allowed pairs together: none of them is given up for it.
     cost = np.where(allowed, distance, (gate + 1) * (min(allowed.shape) + 1))
     rows, columns = linear_sum_assignment(cost)

@@ -33,6 +33,7 @@ PRIMITIVES = KINDS[:4]  # the paper's; "polygon" is any other outline of straigh
 SAME_CORNER = 1e-9  # m: nearer corners are one; far below the 1 mm grid, far above rounding (1e-16 m)
 STRAIGHT = 1e-9  # rad: a corner that bends the outline by less is none
 NEARLY_RIGHT = np.radians(2)  # of 90 degrees: points of a short side tell its direction no better
+MOST_AT_ONCE = 2**17  # pairs of a corner and a point: 1 MB in each array
 SHOWN_CORNERS = 6  # a polygon with more is printed with its first three
 
 
@@ -239,7 +240,14 @@ class Polygon:
 
     def signed_distance(self, points: ArrayLike) -> Floats:
         """Return each point's distance to the outline, shape (N,), metres; negative inside."""
-        x, y = as_points(points).T[:, None] - self.vertices.T[..., None]  # from each corner, (K, N) each
+        points = as_points(points)
+        most = max(1, MOST_AT_ONCE // len(self.vertices))
+        blocks = [points[i : i + most] for i in range(0, max(1, len(points)), most)]
+        return np.concatenate([self._signed_distance(block) for block in blocks])
+
+    def _signed_distance(self, points: Floats) -> Floats:
+        """Return the same of so few points that a number for each of them and each corner fits into memory."""
+        x, y = points.T[:, None] - self.vertices.T[..., None]  # from each corner, (K, N) each
         dx, dy = self.edges.T[..., None]
         along = np.clip((x * dx + y * dy) / (dx**2 + dy**2), 0.0, 1.0)
         distance = np.hypot(x - along * dx, y - along * dy).min(axis=0)

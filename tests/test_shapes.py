@@ -4,6 +4,7 @@ import copy
 import dataclasses
 import math
 import pickle
+import tracemalloc
 from itertools import combinations
 
 import numpy as np
@@ -823,3 +824,17 @@ def test_as_count_failure(value, least, sentence):
 def test_short_cuts_at_sixty_signs():
     assert short("x" * 58) == repr("x" * 58)
     assert short("x" * 59) == "'" + "x" * 56 + "..."
+
+
+def test_the_memory_of_distances_does_not_grow_with_corners_times_points():
+    """A thousand corners and 50,000 points are 400 MB in each array, all at once."""
+    angles = np.arange(1000) * 2 * np.pi / 1000
+    ring = Polygon(0.1 * np.column_stack([np.cos(angles), np.sin(angles)]))
+    points = np.random.default_rng(0).uniform(-0.2, 0.2, (50_000, 2))
+    tracemalloc.start()
+    distance = ring.signed_distance(points)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 40e6
+    np.testing.assert_allclose(distance, Circle((0, 0), 0.1).signed_distance(points), atol=1e-6)
+    np.testing.assert_array_equal(distance[::1000], ring.signed_distance(points[::1000]))

@@ -98,7 +98,7 @@ def plot_found(
     labels = [(text, shape, KIND_INKS[shape.kind]) for text, shape in notes]
     told = [thing for thing, true in report.rest.things if true in report.missed] if report is not None else []
     labels += [("of no kind", box, INK) for box, thing in zip(things, beside.others, strict=True) if thing not in told]
-    write_labels(ax, labels, [*shapes, *truth, *map(_strip, beside.walls)], room)
+    write_labels(ax, labels, [*shapes, *truth, *map(_strip, beside.walls)], room, halo=len(beside.strays) > 0)
     return ax
 
 

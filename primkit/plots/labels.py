@@ -132,7 +132,9 @@ class Places:
         return cost + MISPLACED * (crossed | _touch(self.boxes, shapely.STRtree(lines)))
 
 
-def write_labels(ax: Axes, labels: Sequence[Label], obstacles: Sequence[Shape], room: Floats) -> None:
+def write_labels(
+    ax: Axes, labels: Sequence[Label], obstacles: Sequence[Shape], room: Floats, *, halo: bool = False
+) -> None:
     """Write each text near its shape, on free ground; one that finds none is left out.
 
     Parameters
@@ -145,10 +147,12 @@ def write_labels(ax: Axes, labels: Sequence[Label], obstacles: Sequence[Shape], 
         What no label may lie on, beside the labels' own shapes.
     room : array, shape (2, 2)
         The lower left and the upper right corner of what the labels may fill, metres.
+    halo : bool
+        Whether letters have a white rim: strays may lie beneath.
     """
     ground = Ground.of([shape for _, shape, _ in labels], obstacles, room)
     look: dict[str, Any] = {"ha": "center", "va": "center", "zorder": 6, "in_layout": False}
-    look["path_effects"] = [withStroke(linewidth=2, foreground="white")]  # strays may lie beneath
+    look |= {"path_effects": [withStroke(linewidth=2, foreground="white")]} if halo else {}
     texts = [ax.text(0, 0, text, color=color, **look) for text, _, color in labels]
     lines = [ax.plot([], [], color=GREY, linewidth=0.8, zorder=5)[0] for _ in labels]
     at_each_size(ax, partial(_arrange, ax, ground, texts, lines))

@@ -29,7 +29,7 @@ from .look import set_title
 from .pictures import plot_clusters, plot_points, plot_scan, plot_world
 
 PICTURE_DPI = 200
-LAYOUT_ROUNDS = 4  # the layout comes nearer to its goal each time
+LAYOUT_ROUNDS = 2  # the layout comes nearer to its goal each time: after these, to a pixel or two
 
 
 class ShownFigure(Figure):

@@ -24,7 +24,6 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtr
 
 from ..arguments import Floats
 from .outlines import Outlines
@@ -157,6 +156,8 @@ def shares(points: Floats, outlines: Outlines, spread: float) -> tuple[Floats, F
     log_likelihood : array, shape (C,)
         Natural logarithm of the density of all points together.
     """
+    from scipy.special import ndtr  # not at the top: it takes longer to load than all of the kit
+
     begin, end = outlines.spans()
     length = (end - begin)[:, None, :]
     t = outlines.along(points) - begin[:, None, :]
