@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ..course.untrusted import UNTRUSTED_WORDS
-from ..table import count
+from ..table import Table, count
 from .words import LOOK, Parser, path, say
 
 TEACH_TEXT = "run a course: release problem sets, grade them, see how the class did"
@@ -22,6 +22,7 @@ examples:
   cd robotics
   primkit teach check                    is all there, and how is it mended?
   primkit teach release ps1              release/ps1: for your students
+  primkit teach collect ps1 DOWNLOAD.zip from Moodle, Canvas, e-mail, ...
   primkit teach grade ps1                what lies in submitted/<student>/ps1
   primkit teach report ps1               how the class did, and nbgrader's export
 
@@ -50,6 +51,8 @@ def teach_options(parser: Parser) -> None:
     new.option("--assignments", "DIR", path, None, "where source/ and grader/ lie", shown="those of the project")
     command("check", _check, "look whether all is there, and say how each fault is mended")
     command("release", _release, "make the students' version, and their personal maps", ps=True)
+    collect = command("collect", _collect, "place what was handed in, from the downloads of an LMS", ps=True)
+    collect.add_argument("paths", metavar="FILE", nargs="+", type=path, help="zips, folders, notebooks, e-mails")
     grade = command("grade", _grade, "grade what was handed in, each submission on its own", UNTRUSTED_WORDS, ps=True)
     grade.add_argument("--again", action="store_true", help="grade also what has not changed since")
     grade.add_argument("--student", metavar="ID", action="append", default=[], help="only this one; may be repeated")
@@ -97,6 +100,21 @@ def _release(arguments: argparse.Namespace) -> None:
 
     course = _course(arguments)
     release(course, course.set(arguments.name), say=say)
+
+
+def _collect(arguments: argparse.Namespace) -> None:
+    from ..course.collect import collect, table_of
+
+    course = _course(arguments)
+    name = course.set(arguments.name)
+    collected, unplaced = collect(course, name, arguments.paths)
+    rows = table_of(course, name, collected)
+    say(str(Table(("who", "what", "when", "to be known"), rows, f"{name}: {count(len(collected), 'student')}")))
+    if unplaced:
+        say(f"\n{count(len(unplaced), 'file')} without a place:")
+        for file in unplaced:
+            say(f"  {file.place}  {file.says}")
+    say(f"Next   primkit teach grade {name}")
 
 
 def _grade(arguments: argparse.Namespace) -> None:

@@ -17,9 +17,10 @@ from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 
-from .course import CONFIG, COPIED_FOLDERS, Course
+from .course import CONFIG, COPIED_FOLDERS, STUDENTS, Course
 from .handed_in import strangers
 from .moved import old_names
+from .students import SAVE_AS, read_students
 
 LEAST_PYTHON = (3, 11)
 ENVIRONMENT = Path(__file__).resolve().parents[2] / "environment.txt"  # in a clone
@@ -133,11 +134,11 @@ def _secrets(course: Course) -> Iterator[Finding]:
         try:
             found = look()
         except ValueError as error:
-            told, _, mend = str(error).partition(": ")
+            told, _, mend = str(error).removeprefix(f"{what}: ").partition(": ")
             yield Finding(what, told, mend or "see the first line of a new course's file")
             continue
         number = f"{len(found)} {'students' if isinstance(found, list) else 'characters'}"
-        yield Finding(what, number, fine=True)
+        yield Finding(what, number + (_odd_name(course) if isinstance(found, list) else ""), fine=True)
         for name in course.sets() if what == "students.csv" else ():
             for fault in strangers(course, name):
                 told, _, mend = fault.says.partition("? ")
@@ -145,6 +146,13 @@ def _secrets(course: Course) -> Iterator[Finding]:
     salt = course.root / "salt.txt"
     if os.name == "posix" and salt.is_file() and salt.stat().st_mode & 0o077:
         yield Finding("salt.txt", "others on this computer can read it", f"chmod 600 {salt}")
+
+
+def _odd_name(course: Course) -> str:
+    """Return the first name that may have been read wrongly: a list in cp1252 could be in another such alphabet."""
+    students, encoding = read_students(course.root / STUDENTS)
+    odd = next((each.name for each in students if not each.name.isascii()), "") if encoding == "cp1252" else ""
+    return odd and f"; is one of them called {odd}? If not: {SAVE_AS}"
 
 
 def _gradebook(course: Course) -> Iterator[Finding]:

@@ -10,18 +10,14 @@ them), ``submitted/``, ``autograded/``, ``feedback/``, ``gradebook.db`` and ``re
 
 from __future__ import annotations
 
-import csv
-import io
-import re
 import secrets
 import shutil
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 
-from ..arguments import short
-from ..formats.files import bounded_read
 from .personal import SALT_LETTERS
+from .students import STUDENT_COLUMNS, Student, read_students
 
 # Where the assignments lie in a clone of the project; a wheel holds none.
 ASSIGNMENTS = Path(__file__).resolve().parents[2] / "notebooks" / "assignments"
@@ -29,8 +25,6 @@ COPIED_FOLDERS = ("source", "grader")  # solutions and hidden tests: neither is 
 SCANS = "my_scans.npz"  # a problem set that has this file is about a personal map
 SALT = "salt.txt"
 STUDENTS = "students.csv"
-STUDENT_COLUMNS = ("id", "first_name", "last_name", "email")  # what `nbgrader db student import` reads
-ID = re.compile(r"[\w@.-]+")  # anything else means something to nbgrader's search for files, or to the system
 
 # How a submission is put in order: nbgrader's own steps, and ours between them.
 SANITIZE_STEPS = [
@@ -64,11 +58,28 @@ c.Autograde.autograde_preprocessors = [
     "nbgrader.preprocessors.AssignLatePenalties",
     "nbgrader.preprocessors.CheckCellMetadata",
 ]
+c.AssignLatePenalties.plugin_class = "primkit.course.late.LateRule"  # its settings stand in course.toml
 c.CarefulExecute.course = course
 c.CarefulExecute.timeout = 60  # seconds for each cell
 c.CarefulExecute.tests_timeout = 180  # seconds for each hidden test; its parts have limits of their own
 c.CarefulExecute.megabytes = 4096  # of memory for each submission
 '''
+SETTINGS = "course.toml"
+SETTINGS_TEXT = """\
+# When each problem set is due; with the zone, as +01:00, or by the clock of the computer that grades.
+[due]
+# ps1 = 2026-03-01T23:59:00+01:00
+
+# Later for one student: a table for each problem set.
+# [later.ps1]
+# s002 = 2026-03-08T23:59:00+01:00
+
+# What a late day costs, of the points that were reached, and when nothing counts any more.
+[late]
+grace_minutes = 15
+percent_a_day = 0
+days = 7
+"""
 IGNORED = """\
 # Neither secrets nor students' work belong into a repository.
 salt.txt
@@ -76,6 +87,7 @@ students.csv
 gradebook.db*
 release/
 personal/
+collected/
 submitted/
 autograded/
 feedback/
@@ -136,36 +148,18 @@ class Course:
             raise ValueError(f"{SALT} must hold at least {SALT_LETTERS} characters, got {len(salt)}")
         return salt
 
-    def students(self) -> list[str]:
-        """Return the ids of all students in the list."""
+    def roster(self) -> list[Student]:
+        """Return all students in the list."""
         path = self.root / STUDENTS
         if not path.is_file():
             raise ValueError(
                 f"{STUDENTS} is missing in {self.root}: a table with the columns {', '.join(STUDENT_COLUMNS)}"
             )
-        try:
-            table = csv.DictReader(io.StringIO(bounded_read(path).decode("utf-8-sig"), newline=""))
-            if "id" not in (table.fieldnames or ()):
-                wrong = ",".join(table.fieldnames or ())
-                semicolons = " (saved with semicolons: choose CSV with commas)" if ";" in wrong else ""
-                raise ValueError(
-                    f"{STUDENTS} must begin with the line {','.join(STUDENT_COLUMNS)}, got {short(wrong)}{semicolons}"
-                )
-            lines = [(table.line_num, row["id"]) for row in table]
-        except UnicodeDecodeError:
-            raise ValueError(f"{STUDENTS} must be text in UTF-8: choose CSV UTF-8 where you save it") from None
-        except csv.Error as error:
-            raise ValueError(f"{STUDENTS} must be a table with commas, got a line that is none: {error}") from None
-        ids = [name for _, name in lines]
-        for line, name in lines:
-            if not name or not ID.fullmatch(name):
-                raise ValueError(
-                    f"{STUDENTS}: an id must be made of letters, digits and . _ - @ alone, "
-                    f"got {short(name)} in line {line}"
-                )
-        if twice := sorted({name for name in ids if ids.count(name) > 1}):
-            raise ValueError(f"{STUDENTS}: an id must stand there once, got twice: {', '.join(twice)}")
-        return ids
+        return read_students(path)[0]
+
+    def students(self) -> list[str]:
+        """Return the ids of all students in the list."""
+        return [student.id for student in self.roster()]
 
     def notebooks(self, name: str) -> list[str]:
         """Return the notebooks' names in a problem set, without their ending."""
@@ -212,6 +206,7 @@ def new_course(root: str | Path, assignments: str | Path = ASSIGNMENTS) -> Cours
         shutil.copytree(assignments / name, course.root / name, ignore=ignore)
     (course.root / "nbgrader_config.py").write_text(CONFIG, encoding="utf-8")
     (course.root / STUDENTS).write_text(",".join(STUDENT_COLUMNS) + "\n", encoding="utf-8")
+    (course.root / SETTINGS).write_text(SETTINGS_TEXT, encoding="utf-8")
     (course.root / ".gitignore").write_text(IGNORED, encoding="utf-8")
     salt = course.root / SALT
     salt.touch(mode=0o600)

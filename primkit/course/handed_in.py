@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from ..arguments import short
-from .course import ID, STUDENTS, Course
+from .course import STUDENTS, Course
+from .notebooks import marked
+from .students import ID, ID_RULE
 
 MOST_MEGABYTES = 16  # of a notebook: more is output that never ended
 
@@ -35,7 +38,7 @@ def file_faults(course: Course, name: str, student: str) -> list[Fault]:
     """Return why a submission cannot be run; nothing when it can."""
     folder = course.root / "submitted" / student / name
     if not ID.fullmatch(student):
-        return [Fault(student, "-", "bad id", "the folder's name must be made of letters, digits and . _ - @ alone")]
+        return [Fault(student, "-", "bad id", f"the folder's name must be made of {ID_RULE}")]
     faults = []
     for notebook in course.notebooks(name):
         path = folder / f"{notebook}.ipynb"
@@ -78,7 +81,7 @@ def _not_a_notebook(path: Path) -> str | None:
         return "is JSON, but has no list of cells"
     if any(not isinstance(cell, dict) or not isinstance(cell.get("metadata", {}), dict) for cell in data["cells"]):
         return "is JSON, but has cells that are none"
-    if not any("nbgrader" in cell.get("metadata", {}) for cell in data["cells"]):
+    if not any(marked(data)):
         return "holds no cell of the problem set: was another notebook handed in, or its cells copied to a new one?"
     return None
 
@@ -94,7 +97,8 @@ def tree_hash(*folders: Path) -> str:
         for path in sorted(folder.rglob("*")):
             if {"__pycache__", ".ipynb_checkpoints"} & set(path.parts):
                 continue
-            digest.update(f"{path.relative_to(folder).as_posix()}\0{path.is_file()}\0".encode())
+            name = os.fsencode(path.relative_to(folder).as_posix())  # which need not be UTF-8
+            digest.update(name + f"\0{path.is_file()}\0".encode())
             if path.is_file():
                 digest.update(hashlib.sha256(path.read_bytes()).digest())
     return digest.hexdigest()
