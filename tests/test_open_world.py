@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import primkit as pk
+from tests.benchmarks.open_world import speed, stopwatch
 from tests.benchmarks.open_world.__main__ import LINES
 from tests.benchmarks.open_world.account import SETS
 from tests.benchmarks.open_world.boards import rng_of, two_flush, two_turned
@@ -116,6 +117,19 @@ def test_two_shapes_stand_as_far_apart_as_told(gap):
         one, other = (world := two_flush(gap, rng_of(0, k))).shapes
         assert world.least_gap() == pytest.approx(gap, abs=1e-9)
         assert (one.normals @ other.normals.T).min() == pytest.approx(-1)
+
+
+def test_the_way_of_the_points_is_counted():
+    figures = {figure.what.strip(): figure.value.value for figure in LINES["simple"][0](1, 0)}
+    assert figures["functions that the points come to"] >= figures["in how many files"] > 1
+    assert figures["names that the points have in these functions"] >= figures["functions that the points come to"]
+    assert figures["lines of robust"] > 500
+
+
+def test_the_stopwatch_times_a_map_and_a_scan():
+    assert 0 < stopwatch.milliseconds(lambda: sum(range(10_000))) < 100
+    assert 0 < stopwatch.alone(0)[0] < 100
+    assert 0 < speed.percentile_of(np.arange(101.0)).low <= 95 <= speed.percentile_of(np.arange(101.0)).high
 
 
 @pytest.mark.parametrize("sort", SETS)

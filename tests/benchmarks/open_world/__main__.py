@@ -6,6 +6,7 @@ import argparse
 import sys
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 
 from threadpoolctl import threadpool_limits
 
@@ -13,6 +14,8 @@ from .account import account
 from .crowded import gaps, planks, strays, walls
 from .figures import Figure
 from .ordinary import certain, lost, scale
+from .simple import simple
+from .speed import speed
 from .unknown import unknown
 
 # Each line with how many boards, sets or maps it takes when nothing is said.
@@ -26,6 +29,8 @@ LINES: dict[str, tuple[Callable[[int, int], Iterator[Figure]], int]] = {
     "strays": (strays, 100),
     "planks": (planks, 300),
     "account": (account, 10_000),
+    "speed": (speed, 3),
+    "simple": (simple, 1),
 }
 
 
@@ -35,12 +40,15 @@ def main() -> bool:
     parser.add_argument("line", choices=[*LINES, "all"], metavar="LINE", help=f"{', '.join(LINES)}, or all")
     parser.add_argument("n", nargs="?", type=int, metavar="N", help="how many boards (default: each line's own number)")
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="other seeds draw other boards")
+    parser.add_argument("--before", metavar="DIR", help="for speed: a folder that holds an earlier edition of primkit")
     asked = parser.parse_args()
     reached = True
     for name in LINES if asked.line == "all" else [asked.line]:
         measure, usual = LINES[name]
+        title = (measure.__doc__ or "").splitlines()[0]
+        measure = partial(measure, before=asked.before) if measure is speed else measure
         begun = time.process_time()
-        print(f"\n{name}, {asked.n or usual} boards, seed {asked.seed}: {(measure.__doc__ or '').splitlines()[0]}")
+        print(f"\n{name}, {asked.n or usual} boards, seed {asked.seed}: {title}", flush=True)
         with threadpool_limits(1):
             for figure in measure(asked.n or usual, asked.seed):
                 print(figure, flush=True)
