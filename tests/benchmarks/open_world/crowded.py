@@ -9,6 +9,7 @@ import numpy as np
 import primkit as pk
 from primkit.measure import Wall
 from primkit.shapes import Polygon
+from primkit.study.oracle import oracle_fit, told_points
 
 from .boards import ROOM_CELL, ROOM_LIDAR, placed, rng_of, room, seen_on, two_flush, two_turned
 from .figures import Figure, mean, number, share, share_of_things
@@ -27,15 +28,21 @@ def gaps(n: int, seed: int) -> Iterator[Figure]:
     """Two shapes 2 to 20 mm apart, half of them with parallel sides that face each other."""
     wrong: dict[str, bool] = {}
     right: dict[tuple[int, str], dict[str, bool]] = {(mm, how): {} for mm in GAPS_MM for how in NEAR}
+    told: dict[tuple[int, str], dict[str, bool]] = {cell: {} for cell in right}
     for k in range(n):
         (mm, how), rng = list(right)[k % len(right)], rng_of(seed, k)
         world = NEAR[how](mm / 1000, rng)
-        found = pk.find_shapes(seen_on(world, rng), rng=0)
+        scans = pk.scan(world, pk.teleport_poses(world), rng=rng)
+        points, owners = told_points(world, scans, pk.Lidar())
+        found = pk.find_shapes(points, rng=0)
         right[mm, how][f"{k}"] = len(found) == 2 and n_right(found, world) == 2
+        fits = [fit for fit in oracle_fit(world, points, owners) if fit is not None]
+        told[mm, how][f"{k}"] = n_right(fits, world) == 2
         wrong[f"{k} ({mm} mm {how})"] = bool(sure_and_wrong(found, world.shapes))
     yield share("two shapes: boards with something certain and wrong", wrong, at_most=FEW)
-    for (mm, how), told in right.items():
-        yield share(f"both right, {mm} mm apart, {how}", told, at_least=BOTH_RIGHT.get((mm, how)))
+    for (mm, how), both in right.items():
+        yield share(f"both right, {mm} mm apart, {how}", both, at_least=BOTH_RIGHT.get((mm, how)))
+        yield share("    by the fit that is told each point's side", told[mm, how])
 
 
 # --- walls -------------------------------------------------------------------------------------------------------
