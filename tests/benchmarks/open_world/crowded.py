@@ -113,10 +113,10 @@ def near_pillar(one: pk.Detection, pillar: pk.Circle | Polygon) -> bool:
 
 def runs_on(wall: Wall, side: Floats) -> bool:
     """Tell whether both ends of a wall lie on a side of the room, and it covers more than half of it."""
-    way = side[1] - side[0]
-    length = np.hypot(*way)
-    off = [abs(way[0] * (end - side[0])[1] - way[1] * (end - side[0])[0]) / length for end in (wall.start, wall.end)]
-    return bool(max(off) <= IN_ROOM and wall.length > length / 2)
+    way, ends = side[1] - side[0], np.array([wall.start, wall.end])
+    along = np.clip((ends - side[0]) @ way / (way @ way), 0.0, 1.0)
+    off = np.hypot(*(side[0] + along[:, None] * way - ends).T)
+    return bool(off.max() <= IN_ROOM and wall.length > np.hypot(*way) / 2)
 
 
 # --- strays and planks -------------------------------------------------------------------------------------------

@@ -138,7 +138,7 @@ def scale(n: int, seed: int) -> Iterator[Figure]:
         off = apart_by(there, here, factor) / 0.001
         anew[f"{k} x {factor:g}"], cells[f"{k} x {factor:g}"] = np.isfinite(off), off <= SAME_CELL
     yield share(f"points enlarged 0.01 to 100 times: the same shapes to {SAME:g}", same, at_least=1.0)
-    yield number("    the farthest apart of all, in parts of a metre", apart, len(same))
+    yield number("    the farthest apart of all, on a board of a metre [nm]", 1e9 * apart, len(same))
     yield share("boards scanned anew: the same kinds and counts", anew, at_least=1.0)
     yield share(f"boards scanned anew: within {SAME_CELL:g} of a cell", cells, at_least=1.0)
 
