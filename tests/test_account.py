@@ -4,22 +4,9 @@ import numpy as np
 import pytest
 
 import primkit as pk
+from tests.benchmarks.open_world.boards import seen_on
+from tests.benchmarks.open_world.judging import accounted, in_order
 from tests.test_unknown import CURVED, seen
-
-
-def seen_on(world, seed=0, **lidar):
-    grid = pk.Grid()
-    grid.add(pk.scan(world, pk.teleport_poses(world), pk.Lidar(**lidar), rng=seed))
-    return grid
-
-
-def accounted(found):
-    parts = [one.points for one in (*found, *found.walls, *found.others)]
-    return np.vstack([np.empty((0, 2)), *parts, found.strays])
-
-
-def in_order(points):
-    return points[np.lexsort((points[:, 1], points[:, 0]))]
 
 
 def clouds():

@@ -6,35 +6,14 @@ import pytest
 import primkit as pk
 from primkit.measure import measure_shape
 from primkit.segmentation import count_by_silhouette
+from tests.benchmarks.open_world.account import UTM
+from tests.benchmarks.open_world.ordinary import SAME, apart_by, board
 from tests.helpers import exactly
-
-FAR = np.array([512_345.0, 5_412_345.0])  # m: UTM
-
-
-def board(seed, noise, k=1.0):
-    """A free board, the robot's sensor and the cells, all enlarged k times."""
-    world = pk.random_world(4, style="free", rng=seed)
-    scans = pk.scan(world, pk.teleport_poses(world), pk.Lidar(noise_std=noise), rng=seed)
-    large = pk.World([scaled(shape, k) for shape in world.shapes], world.size * k)
-    grid = pk.Grid(0.001 * k)
-    grid.add(scans.points() * k)
-    return large, grid
-
-
-def scaled(shape, k):
-    return pk.Circle(shape.center * k, shape.radius * k) if shape.kind == "circle" else pk.Polygon(shape.vertices * k)
 
 
 def numbers(one):
     corners = one.shape.center if one.kind == "circle" else one.shape.vertices
     return [*np.ravel(corners), *one.shape.dimensions, one.rms, *one.center_std, *one.dimension_std]
-
-
-def assert_same(found, as_before, k, offset=(0.0, 0.0), rtol=1e-9, atol=0.0):
-    assert [d.kind for d in found] == [d.kind for d in as_before]
-    for new, old in zip(found, as_before, strict=True):
-        old = old.shape.moved(np.array(offset) / k)
-        np.testing.assert_allclose(np.ravel(scaled(old, k).outline(7)), np.ravel(new.shape.outline(7)), rtol, atol)
 
 
 @pytest.mark.parametrize(("settings", "k"), [(pk.PAPER, 10), *((pk.ROBUST, k) for k in (0.01, 0.1, 0.3, 3, 10, 100))])
@@ -45,7 +24,7 @@ def test_the_same_points_enlarged_are_the_same_shapes(settings, k):
         here = pk.find_shapes(grid, told, settings=settings, rng=0)
         there = pk.find_shapes(grid.points() * k, told, settings=settings, resolution=0.001 * k, rng=0)
         assert len(here) >= 3
-        assert_same(there, here, k)
+        assert apart_by(there, here, k) <= SAME
         for new, old in zip(there, here, strict=True):
             np.testing.assert_allclose(numbers(new), np.array(numbers(old)) * k, rtol=1e-7, atol=1e-9 * k)
             assert len(new.points) == len(old.points)
@@ -63,15 +42,17 @@ def test_a_board_far_away_is_the_same_board():
     """In UTM coordinates, half a million metres east and five million north, digits are not lost."""
     for seed in range(3):
         _, grid = board(seed, 0.001 * (seed % 2))
-        here, there = pk.find_shapes(grid, rng=0), pk.find_shapes(grid.points() + FAR, rng=0)
-        assert_same(there, here, 1.0, FAR, rtol=0, atol=2e-6)
+        here, there = pk.find_shapes(grid, rng=0), pk.find_shapes(grid.points() + UTM, rng=0)
+        assert [one.kind for one in there] == [one.kind for one in here]
+        for new, old in zip(there, here, strict=True):
+            np.testing.assert_allclose(new.shape.outline(7), old.shape.moved(UTM).outline(7), rtol=0, atol=2e-6)
 
 
 def test_the_silhouette_counts_far_away_as_here():
     """Squared distances are differences of squares in scikit-learn: far away, 4 groups for 3."""
     rng = np.random.default_rng(9)
     points = np.vstack([rng.uniform(-0.4, 0.4, 2) + rng.normal(0, 0.03, (12, 2)) for _ in range(4)])
-    assert [count_by_silhouette(points + far, 6, rng=0) for far in (0.0, FAR)] == [3, 3]
+    assert [count_by_silhouette(points + far, 6, rng=0) for far in (0.0, UTM)] == [3, 3]
 
 
 def test_own_fits_are_given_metres_and_return_metres():

@@ -8,27 +8,9 @@ from primkit.robust.free import _pruned, free_outline, path_through
 from primkit.robust.lack_of_fit import lack_of_fit, sharpness
 from primkit.robust.outlines import Outlines
 from primkit.robust.scatter import LEAST_SPREAD, spread_across
+from tests.benchmarks.open_world.boards import seen_on
+from tests.benchmarks.open_world.things import bow, oval, regular
 from tests.helpers import exactly
-
-
-def regular(k, radius, inner=None):
-    angles = np.arange(k) * 2 * np.pi / k
-    radii = np.where(np.arange(k) % 2, radius if inner is None else inner, radius)
-    return radii[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
-
-
-def oval(width, height, power=2.0):
-    t = np.arange(160) * 2 * np.pi / 160
-    c, s = np.cos(t), np.sin(t)
-    return np.column_stack(
-        [width * np.sign(c) * np.abs(c) ** (2 / power), height * np.sign(s) * np.abs(s) ** (2 / power)]
-    )
-
-
-def bow(radius):
-    t = np.linspace(-np.pi / 2, np.pi / 2, 80)
-    return np.column_stack([radius * np.cos(t), radius * np.sin(t)])
-
 
 CORNERED = {
     "hexagon": regular(6, 0.09),
@@ -56,9 +38,7 @@ def seen(corners, seed, noise=0.0):
     """The cells that the way-points' scans of one thing occupy, turned and shifted."""
     rng = np.random.default_rng(seed)
     thing = pk.Polygon(corners).moved(rng.uniform(-0.2, 0.2, 2), rng.uniform(0, 2 * np.pi))
-    world, grid = pk.World([thing]), pk.Grid()
-    grid.add(pk.scan(world, pk.teleport_poses(world), pk.Lidar(noise_std=noise), rng=rng))
-    return thing, grid
+    return thing, seen_on(pk.World([thing]), rng, noise_std=noise)
 
 
 def farthest_corner(found, thing):
@@ -91,17 +71,14 @@ def test_the_four_kinds_are_certain(noise):
     """Certainty is not bought by silence."""
     certain = []
     for seed in range(300, 306):
-        world = pk.random_world(4, style="free", rng=seed)
-        grid = pk.Grid()
-        grid.add(pk.scan(world, pk.teleport_poses(world), pk.Lidar(noise_std=noise), rng=seed))
+        grid = seen_on(pk.random_world(4, style="free", rng=seed), seed, noise_std=noise)
         certain += [one.certain for one in pk.find_shapes(grid, rng=0)]
     assert np.mean(certain) >= 0.95
 
 
 def test_cells_that_round_a_whole_side_alike_are_no_bends():
     """On this board a side runs nearly along the cells, whose rounding then repeats itself over many points."""
-    world, grid = pk.random_world(4, style="free", rng=6120), pk.Grid()
-    grid.add(pk.scan(world, pk.teleport_poses(world), pk.Lidar(), rng=6120))
+    grid = seen_on(pk.random_world(4, style="free", rng=6120))
     assert all(one.certain for one in pk.find_shapes(grid, rng=0))
 
 
