@@ -109,7 +109,8 @@ class Rest:
         """Return how many of the strays lie on something."""
         if self.n_strays == 1:
             return "on an outline" if self.n_lost else "on no outline"
-        return f"{self.n_lost or 'none'} of them on an outline"
+        share = {0: "none", self.n_strays: "all"}.get(self.n_lost, self.n_lost)
+        return f"{share} of them on an outline"
 
     def _walls(self) -> str:
         """Return how right the walls are; nothing where there are none and none was found."""

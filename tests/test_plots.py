@@ -39,6 +39,7 @@ from primkit.plots import (
     plot_world,
     save_figure,
 )
+from primkit.plots.told import told
 from primkit.robot import teleport_poses
 from primkit.segmentation import segment
 from primkit.shapes import KINDS, PRIMITIVES, Circle, Polygon
@@ -432,6 +433,7 @@ def test_walls_things_and_strays_are_drawn(ax):
     (thing,) = [line for line in ax.lines if to_hex(line.get_color()) == GREY.lower() and line.is_dashed()]
     np.testing.assert_array_equal(thing.get_xydata()[:-1], found.others[0].outline)
     assert "of no kind" in [text.get_text() for text in shown_labels(ax)]
+    assert f"stray: {len(strays)} points" in told(ax.figure)
     n = len(found.strays)
     assert title(ax) == f"2 shapes found; 4 walls, 1 thing of no kind, {n} strays"
 
@@ -496,6 +498,7 @@ def test_a_board_of_another_size_has_its_own_units(k, unit, ax):
     plot_found(found, world, ax, evaluate(found, world))
     ax.figure.canvas.draw()
     assert (ax.get_xlabel(), ax.get_ylabel()) == (f"x [{unit}]", f"y [{unit}]")
+    assert f"x [{unit}] from -5.3 to 5.3; y" in told(ax.figure).replace("\u2212", "-")
     assert {-5, 0, 5} < {float(tick.get_text().replace("\u2212", "-")) for tick in ax.get_xticklabels()}
     assert ax.get_xlim()[1] == pytest.approx(world.size * 0.53)
     assert legend_of(ax) == ["found", "truth"]  # all of every outline was seen

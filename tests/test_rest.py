@@ -82,6 +82,11 @@ SENTENCES = {
         pk.World(),
         "Beside the shapes: 2 strays, none of them on an outline.",
     ),
+    "strays on outlines alone": (
+        Found(strays=SQUARE.outline(8)),
+        pk.World([SQUARE]),
+        "Beside the shapes: 8 strays, all of them on an outline.",
+    ),
     "things": (
         Found(others=[Other(SQUARE.outline(60), SQUARE.vertices), Other(np.full((9, 2), 0.4), SQUARE.vertices)]),
         pk.World([SQUARE]),

@@ -481,6 +481,13 @@ def test_numbers_of_shapes_that_the_paper_has_not():
     assert "\n7 shapes, 1 map\n" in str(table)
 
 
+def test_a_polygon_of_another_kind_has_its_line():
+    star = replace(BASE, kinds=("polygon",), dimension_counts=(10,), dimension_errors=(0.001,) * 10)
+    assert star.within(0.005) == PERFECT
+    lines = tables([star, BASE])[0].lines
+    assert list(dict.fromkeys(line.maps for line in lines)) == ["circle", "polygon", "average"]
+
+
 def test_tables_failure():
     rows = [BASE, replace(BASE, tolerance=0.001)]
     assert refusal(tables, rows) == "the rows of a table must share one tolerance, got 0.001, 0.005 m"

@@ -164,7 +164,7 @@ def _draw_rest(ax: Axes, beside: Found) -> list[Shape]:
     for other in beside.others:
         ring = np.vstack([other.outline, other.outline[:1]])
         ax.plot(*ring.T, color=GREY, linewidth=1.8, linestyle=DASHES, zorder=2.9)
-    ax.plot(*beside.strays.T, "o", color=GREY, markersize=marks(ax, 2.2), markeredgewidth=0, zorder=2.8)
+    ax.plot(*beside.strays.T, "o", color=GREY, ms=marks(ax, 2.2), markeredgewidth=0, zorder=2.8, label="stray")
     return [_box(other) for other in beside.others]
 
 

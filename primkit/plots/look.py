@@ -26,7 +26,7 @@ from matplotlib.legend import Legend
 from matplotlib.patches import Circle as CirclePatch
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.patches import Polygon as PolygonPatch
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 from matplotlib.typing import ColorType
 
 from ..arguments import Floats, check_type, short
@@ -88,10 +88,15 @@ def draw_board(
         axis.set_label_text(f"{name} [{unit}]", fontsize=letters(ax, 10))
         axis.set_major_locator(MaxNLocator(5))
         if times > 1:
-            axis.set_major_formatter(lambda value, _: f"{round(times * value, 6) + 0.0:g}".replace("-", "\u2212"))
+            axis.set_major_formatter(FuncFormatter(partial(_tick_in, times)))
     ax.spines[:].set_visible(False)
     ax.tick_params(color=GREY, labelsize=letters(ax, 9))
     return room
+
+
+def _tick_in(times: int, value: float, _: int | None = None) -> str:
+    """Return a tick's text; ``value`` in metres, its unit goes so many ``times`` into one."""
+    return f"{round(times * value, 6) + 0.0:g}".replace("-", "\u2212")  # as matplotlib's own minus
 
 
 def width_of(ax: Axes) -> float:

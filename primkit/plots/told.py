@@ -22,8 +22,10 @@ from collections import Counter
 import numpy as np
 from matplotlib import get_backend
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter
 
 from ..table import count
 from ..themed import themed
@@ -68,11 +70,17 @@ def _axes_told(ax: Axes) -> str:
         return ""
     title = next((words for place in ("left", "center", "right") if (words := ax.get_title(loc=place))), "")
     ranges = [
-        f"{name} from {low:.3g} to {high:.3g}"
-        for name, (low, high) in ((ax.get_xlabel(), ax.get_xlim()), (ax.get_ylabel(), ax.get_ylim()))
-        if name and ax.axison
+        f"{axis.get_label_text()} from {' to '.join(_as_tick(axis, end) for end in ends)}"
+        for axis, ends in ((ax.xaxis, ax.get_xlim()), (ax.yaxis, ax.get_ylim()))
+        if axis.get_label_text() and ax.axison
     ]
     return _sentence(title) * bool(title) + " " * bool(title) + "; ".join([*ranges, *_marks(ax), *_words(ax)])
+
+
+def _as_tick(axis: Axis, value: float) -> str:
+    """Return a value as the ticks tell it: they may be in centimetres."""
+    formatter = axis.get_major_formatter()
+    return formatter(value) if isinstance(formatter, FuncFormatter) else f"{value:.3g}"
 
 
 def _marks(ax: Axes) -> list[str]:

@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 
 from ..formats import StrPath, recorded_rows, write_atomically
-from ..shapes import PRIMITIVES
+from ..shapes import KINDS
 from ..table import Table, as_csv
 from .estimate import Estimate, means_of
 from .paper_table import RECORDED, Line, paper_table
@@ -94,7 +94,7 @@ def tables(rows: Iterable[Row], *, driven: str = "") -> tuple[Table, ...]:
         moved = [row for row in rows if row.movement == movement]
         one = [row for row in moved if row.n_shapes == 1]
         several = [row for row in moved if row.n_shapes != 1]
-        by_kind = {kind: [row for row in one if row.kinds == (kind,)] for kind in PRIMITIVES}
+        by_kind = {kind: [row for row in one if row.kinds == (kind,)] for kind in KINDS}
         counts = sorted({row.n_shapes for row in several})
         by_count = {f"{n} shapes": [row for row in several if row.n_shapes == n] for n in counts}
         made.append(_table(f"Table {first}. One shape, {movement} movement", one, by_kind | {AVERAGE: one}))
