@@ -6,7 +6,7 @@ import pytest
 import primkit as pk
 from primkit.robust import regroup
 from primkit.robust.regroup import cost_of, explained
-from primkit.robust.scatter import LEAST_SPREAD
+from primkit.robust.scatter import LEAST_SPREAD, NOWHERE
 
 RECTANGLE = pk.Polygon([(-0.1, -0.04), (0.1, -0.04), (0.1, 0.04), (-0.1, 0.04)])
 CIRCLE = pk.Circle((0.2, 0.0), 0.05)
@@ -56,6 +56,14 @@ def test_two_shapes_in_one_group_are_split():
 def test_a_known_number_is_kept_to(n):
     groups = groups_of(RECTANGLE.outline(300), CIRCLE.outline(150))
     assert len(regrouped(groups, LEAST_SPREAD, n)) == n
+
+
+def test_points_too_few_for_a_shape_cost_what_strays_cost():
+    """Were they free, each group would be better off without its corners."""
+    few, more = groups_of(RECTANGLE.outline(300)[:4], RECTANGLE.outline(300)[:6])
+    assert few.ranked == more.ranked == []
+    assert cost_of([few]) == pytest.approx(-2 * 4 * np.log(NOWHERE))
+    assert cost_of([few, more]) == pytest.approx(cost_of([few]) + cost_of([more]))
 
 
 def test_nothing_stays_nothing():

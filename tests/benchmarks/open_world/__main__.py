@@ -37,7 +37,9 @@ LINES: dict[str, tuple[Callable[[int, int], Iterator[Figure]], int]] = {
 def main() -> bool:
     """Print the figures of the lines that are named; tell whether all goals were reached."""
     parser = argparse.ArgumentParser(prog="open_world", description="what must hold in an open world, measured")
-    parser.add_argument("line", choices=[*LINES, "all"], metavar="LINE", help=f"{', '.join(LINES)}, or all")
+    parser.add_argument(
+        "line", nargs="?", choices=[*LINES, "all"], default="all", metavar="LINE", help=f"{', '.join(LINES)}, or all"
+    )
     parser.add_argument("n", nargs="?", type=int, metavar="N", help="how many boards (default: each line's own number)")
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="other seeds draw other boards")
     parser.add_argument("--before", metavar="DIR", help="for speed: a folder that holds an earlier edition of primkit")

@@ -32,13 +32,14 @@ class Goal:
 
 @dataclass(frozen=True)
 class Figure:
-    """What was measured, its value, of how many, the goal if there is one, and the cases against it."""
+    """What was measured, its value, of how many; the goal if there is one, the cases against it, and a note."""
 
     what: str
     value: Estimate
     n: int
     goal: Goal | None = None
     against: tuple[str, ...] = ()
+    note: str = ""
 
     @property
     def reached(self) -> bool:
@@ -52,7 +53,8 @@ class Figure:
         told = f"{self.what:62} {self.value.text(digits)} of {self.n}".ljust(96) + f"{goal:10} {verdict}"
         more = len(self.against) - MOST_TOLD
         names = ", ".join(self.against[:MOST_TOLD]) + (f" and {more} more" if more > 0 else "")
-        return f"{told}{f'; against: {names}' if names else ''}".rstrip()
+        said = [f"against: {names}"] * bool(names) + [self.note] * bool(self.note)
+        return "; ".join([told, *said]).rstrip()
 
 
 def goal_of(at_least: float | None, at_most: float | None) -> Goal | None:

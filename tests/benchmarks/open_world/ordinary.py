@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -63,9 +64,9 @@ def weighted(name: str, condition: Condition, n: int, seed: int, least: float | 
         kinds.update(f"{pair.true.kind} as {pair.found.kind}" for pair in report.matches if not pair.kind_right)
         kinds.update(f"{shape.kind} missed" for shape in report.missed)
         kinds.update(f"{shape.kind} from nothing" for shape in report.false_alarms)
-    lost = ", ".join(f"{count} {kind}" for kind, count in kinds.most_common())
     means = {board: float(np.mean(scores)) for board, scores in right.items()}
-    yield mean(f"{name}{f' ({lost})' if lost else ''}", means, at_least=least)
+    losses = ", ".join(f"{count} {kind}" for kind, count in kinds.most_common())
+    yield replace(mean(name, means, at_least=least), note=losses)
 
 
 def certain(n: int, seed: int) -> Iterator[Figure]:
