@@ -6,6 +6,7 @@ The answers are in tests/answers, a module for each lesson; the tests take them 
 import ast
 import itertools
 import re
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 
@@ -21,6 +22,12 @@ ANSWERS = {}
 for path in sorted(FOLDER.glob("lesson_*.py")):
     ANSWERS |= import_module(f"tests.answers.{path.stem}").ANSWERS
 TASKS = {task.name: task for task in pk.checks.TASKS}
+
+
+@cache
+def told(task, function):
+    """Return what a check says of a listed answer; each is asked once."""
+    return TASKS[task](function)
 
 
 def table(kind):
@@ -63,29 +70,33 @@ def test_the_reference_is_right(task):
 
 @pytest.mark.parametrize(("task", "function", "_text"), table("right"))
 def test_another_right_way_is_right(task, function, _text):
-    assert TASKS[task](function).right, TASKS[task](function)
+    assert told(task, function).right, told(task, function)
 
 
 @pytest.mark.parametrize(("task", "function", "text"), table("wrong"))
 def test_a_wrong_answer_is_named_by_its_fault(task, function, text):
-    answer = TASKS[task](function)
+    answer = told(task, function)
     assert answer.verdict == "wrong", answer
     assert text in answer.says
 
 
 @pytest.mark.parametrize(("task", "function", "text"), table("error"))
 def test_an_error_shows_the_input_that_broke_it(task, function, text):
-    answer = TASKS[task](function)
+    answer = told(task, function)
     assert answer.verdict == "error", answer
-    assert answer.says.startswith(f"{task}(")
+    assert re.match(rf"(right in \d+ of \d+ cases; raises .* For example )?{task}\(", answer.says), answer
     assert text in answer.says
+    assert " in line " in answer.says or "Keep the arguments that are given" in answer.says
+    with pytest.raises(Exception) as again:  # noqa: PT011
+        function(*answer.args)
+    assert f"raised {type(again.value).__name__}: " in answer.says
 
 
 @pytest.mark.parametrize("task", TASKS)
 def test_every_fault_is_told_by_a_listed_wrong_answer(task):
-    told = [TASKS[task](function).says for function, _ in ANSWERS[task]["wrong"].values()]
+    says = [told(task, function).says for function, _ in ANSWERS[task]["wrong"].values()]
     for fault in TASKS[task].faults:
-        assert any(fault.says in says for says in told), fault.says
+        assert any(fault.says in each for each in says), fault.says
 
 
 @pytest.mark.parametrize("task", TASKS)
@@ -138,14 +149,25 @@ def test_a_number_as_text_is_html_with_sign_and_word():
 
 
 def luminance(color):
-    parts = [int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)]
-    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts]
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color]
     return float(np.dot(linear, [0.2126, 0.7152, 0.0722]))
 
 
+def rgb(color):
+    return np.array([int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)])
+
+
+# Paper and letters of Jupyter's themes, light, dark and with high contrast, and of GitHub's pages.
+THEMES = (("#ffffff", "#212121"), ("#111111", "#ffffff"), ("#212121", "#ffffff"), ("#0d1117", "#f0f6fc"))
+
+
+@pytest.mark.parametrize(("paper", "letters"), THEMES)
 @pytest.mark.parametrize("color", VERDICT_COLORS.values())
-def test_letters_have_enough_contrast_to_white(color):
-    assert 1.05 / (luminance(color) + 0.05) >= 4.5
+def test_the_verdict_can_be_read_in_a_light_theme_and_in_a_dark_one(color, paper, letters):
+    ink, share = re.fullmatch(r"color-mix\(in srgb, (#\w{6}) (\d+)%, currentColor\)", color).groups()
+    mixed = int(share) / 100 * rgb(ink) + (1 - int(share) / 100) * rgb(letters)
+    low, high = sorted([luminance(mixed), luminance(rgb(paper))])
+    assert (high + 0.05) / (low + 0.05) >= 4.5
 
 
 def test_a_faulty_way_that_cannot_do_every_case_names_no_fault():

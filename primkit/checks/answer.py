@@ -20,26 +20,40 @@ from __future__ import annotations
 
 import copy
 import inspect
-import io
-import warnings
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import redirect_stdout
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from html import escape
+from types import FunctionType
 from typing import Any, Literal
 
 import numpy as np
 
+from .calls import Line, OutOfTime, Raised, hint_at, quietly, run
 from .cases import Args
 from .judges import Judge, same, shown
+from .slips import WORDS, find_slips, places
 
 Verdict = Literal["not attempted", "wrong", "error", "right"]
 
 SEED = 20  # the same cases for everybody, on every run
 
+CALL_SECONDS = 3.0  # for one call: what takes longer is a loop that never ends, or far too slow
+SEARCH_SECONDS, LIKENESS_SECONDS = 2.0, 0.5  # for the slip in the student's own code, and for one like it in ours
+# For one call while slips are sought, because an edit can make a loop endless: this, and some times what it took.
+TRIED_SECONDS, TRIED_TIMES = 0.03, 8.0
+
 VERDICT_SIGNS = {"not attempted": "○", "wrong": "✗", "error": "!", "right": "✓"}
-# Okabe and Ito's colours, dark enough for letters; the sign and the word say the same without them.
-VERDICT_COLORS = {"not attempted": "#5A5A5A", "wrong": "#A34700", "error": "#A34700", "right": "#00694D"}
+# Okabe and Ito's colours, drawn towards the page's own letters: so they can be read in a light theme and in a dark one.
+VERDICT_COLORS = {
+    verdict: f"color-mix(in srgb, {color} 60%, currentColor)"
+    for verdict, color in {
+        "not attempted": "#5A5A5A",
+        "wrong": "#A34700",
+        "error": "#A34700",
+        "right": "#00694D",
+    }.items()
+}
 
 
 @dataclass(frozen=True)
@@ -54,11 +68,14 @@ class Answer:
         In a sentence or two: what is off, or with which input it broke.
     fault : str, optional
         A short name for what is wrong, the same for all who do the same: what an overview of a class counts.
+    args : tuple
+        The arguments of the first call that went wrong, to try it again: ``mine(*answer.args)``.
     """
 
     verdict: Verdict
     says: str
     fault: str | None = None
+    args: Args = field(default=(), compare=False)
 
     @property
     def right(self) -> bool:
@@ -81,12 +98,13 @@ class Answer:
 
 @dataclass(frozen=True)
 class Case:
-    """One case: what the function got, what it returned, what the reference returns, and what is off (or None)."""
+    """One case: what the function got and returned, what the reference returns, what is off (or None), and the time."""
 
     args: Args
     got: Any
     expected: Any
     off: str | None
+    seconds: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -149,60 +167,136 @@ class Check:
     judge: Judge
     faults: tuple[Fault, ...] = ()
 
-    def __call__(self, mine: Any) -> Answer:
-        """Judge a student's function."""
+    def __call__(self, mine: Any, seconds: float = CALL_SECONDS) -> Answer:
+        """Judge a student's function; each call of it may take so many seconds."""
         if not callable(mine):
             return Answer("error", f"{self.name} must be a function, got {shown(mine)}.", "no function")
         cases: list[Case] = []
+        warned: list[str] = []
         for args in self.cases(np.random.default_rng(SEED)):
             given = copy.deepcopy(args)
-            try:
-                got = _quietly(mine, given)
-            except Exception as error:  # whatever it is, it is the answer
-                if not cases and isinstance(error, NotImplementedError):  # the stub of a problem set
-                    return Answer("not attempted", f"{self.name} still raises NotImplementedError.")
-                kind = type(error).__name__
-                says = f"{self._write_call(args)} raised {kind}: {error}"
-                if isinstance(error, TypeError) and not _accepts(mine, given):
-                    names = ", ".join(inspect.signature(self.reference).parameters)
-                    says += f"\nKeep the arguments that are given: {self.name}({names})."
-                    return Answer("error", says, "asks for other arguments")
-                return Answer("error", says, f"raises {kind}")
-            if not cases and (got is ... or (isinstance(got, Sequence) and any(part is ... for part in got))):
-                return Answer("not attempted", f"{self.name} still returns `...`.")
+            done = run(mine, given, seconds)
+            got, raised = done.got, done.got if isinstance(done.got, Raised) else None
+            if not cases and _is_stub(got):
+                what = "raises NotImplementedError" if raised else "returns `...`"
+                return Answer("not attempted", f"{self.name} still {what}.{self._other_name(mine)}")
+            if raised and isinstance(raised.error, TypeError) and not _accepts(mine, given):
+                names = ", ".join(inspect.signature(self.reference).parameters)
+                says = (
+                    f"{self._write_call(args)} {raised.told}.\nKeep the arguments that are given: {self.name}({names})."
+                )
+                return Answer("error", says, "asks for other arguments", args)
             if not same(given, args):
                 says = f"{self._write_call(args)} changes what it is given: work on a copy."
-                return Answer("wrong", says, "changes its arguments")
+                return Answer("wrong", says, "changes its arguments", args)
+            warned += [f"{message} in {line}" for message, line in dict.fromkeys(done.warned)]
             expected = self.reference(*copy.deepcopy(args))
-            cases.append(Case(args, got, expected, self.judge(got, expected, args)))
-        return self._decide(cases)
+            off = f"raised {raised.says}" if raised else self.judge(got, expected, args)
+            cases.append(Case(args, got, expected, off, 0.0 if raised else done.seconds))
+            if raised and isinstance(raised.error, OutOfTime):
+                break  # nobody waits for the others
+        return self._decide(mine, cases, warned)
 
     def yours_or_ours(self, mine: Callable[..., Any]) -> Step:
         """Return the student's function where it is right, and the reference where it is not; print it to see which."""
         answer = self(mine)
         return Step(self.name, mine if answer.right else self.reference, answer)
 
-    def _decide(self, cases: list[Case]) -> Answer:
-        """Return the answer for results that all came without an error."""
+    def _decide(self, mine: Any, cases: list[Case], warned: list[str]) -> Answer:
+        """Return the answer for what came out of all cases."""
         wrong = [case for case in cases if case.off is not None]
         if not wrong:
-            return Answer("right", f"{self.name} passes all {len(cases)} cases.")
+            says = f"{self.name} passes all {len(cases)} cases."
+            if warned:
+                message, times = Counter(warned).most_common(1)[0]
+                says += f" But in {times} of them NumPy warns: {message}. Ask first, then calculate."
+            return Answer("right", says)
+        raised = next((case for case in wrong if isinstance(case.got, Raised)), None)
         fault = next((fault for fault in self.faults if self._has(fault, cases)), None)
-        first = wrong[0]
-        says = f"in {len(wrong)} of {len(cases)} cases. For example {self._write_call(first.args)}: {first.off}."
-        return Answer("wrong", says) if fault is None else Answer("wrong", f"{says}\n{fault.says}", fault.called)
+        hints = [fault.says] if fault else []
+        right = [case for case in cases if case.off is None]
+        hints += self._tell_slips(mine, wrong, right, raised.got.line if raised else None)
+        hints = hints or self._tell_likeness(wrong, right) or (hint_at(raised.got) if raised else [])
+        says = "\n".join([self._tell(cases, wrong, raised or wrong[0]), *hints]) + self._other_name(mine)
+        name = fault.called if fault else raised.got.fault if raised else None
+        return Answer("error" if raised else "wrong", says, name, (raised or wrong[0]).args)
+
+    def _tell(self, cases: list[Case], wrong: list[Case], first: Case) -> str:
+        """Return in how many cases a function is off, and one of them."""
+        call = self._write_call(first.args)
+        if not isinstance(first.got, Raised):
+            return f"in {len(wrong)} of {len(cases)} cases. For example {call}: {first.off}."
+        told = f"{call} {first.got.told}."
+        if len(wrong) == len(cases):
+            return told
+        raising = sum(isinstance(case.got, Raised) for case in wrong)
+        also = "" if raising == len(wrong) else f", and is off in {len(wrong) - raising}"
+        right = len(cases) - len(wrong)
+        return f"right in {right} of {len(cases)} cases; raises {first.got.kind} in {raising}{also}. For example {told}"
+
+    def _tell_slips(self, mine: Any, wrong: list[Case], right: list[Case], near: Line | None) -> list[str]:
+        """Return where one change would mend it, in a sentence; nothing where none would."""
+
+        def mends(edited: Any, case: Case, seconds: float) -> bool:
+            given = copy.deepcopy(case.args)
+            got = run(edited, given, min(seconds, TRIED_SECONDS + TRIED_TIMES * case.seconds)).got
+            return not isinstance(got, Raised) and self._agree(got, case.expected, case.args) and same(given, case.args)
+
+        slips = find_slips(mine, wrong, right, mends, SEARCH_SECONDS, near)
+        if not slips:
+            return []
+        if slips[0].mends == len(wrong):
+            return [f"Look at {places(slips)}. All the rest is right."]
+        then = f" Then look at {places(slips[1:])}." if len(slips) > 1 else ""
+        return [f"Look at {places(slips[:1])}. {slips[0].mends} of the {len(wrong)} come from there.{then}"]
+
+    def _tell_likeness(self, wrong: list[Case], right: list[Case]) -> list[str]:
+        """Return which slip in the plain way gives the same results, for a function whose code cannot be read."""
+
+        def alike(edited: Any, case: Case, seconds: float) -> bool:
+            other = run(edited, copy.deepcopy(case.args), min(seconds, TRIED_SECONDS)).got
+            if isinstance(case.got, Raised) or isinstance(other, Raised):
+                return getattr(case.got, "says", "") == getattr(other, "says", None)
+            return self._agree(case.got, other, case.args)
+
+        slips = find_slips(self.reference, wrong, right, alike, LIKENESS_SECONDS)
+        if not slips or slips[0].mends < len(wrong):
+            return []
+        return [f"That is what a plain way gives with one slip in it: {', or '.join(WORDS[s.kind] for s in slips)}."]
+
+    def _agree(self, got: Any, other: Any, args: Args) -> bool:
+        """Tell whether two results are the same; not where the judge meets something that it does not know."""
+        try:
+            return self.judge(got, other, args) is None
+        except Exception:
+            return False
 
     def _has(self, fault: Fault, cases: list[Case]) -> bool:
-        """Tell whether the results show a fault."""
-        if fault.when is not None:
-            return fault.when(cases)
-        ways = fault.like if isinstance(fault.like, tuple) else (fault.like,)
-        return any(_goes_like(way, cases, fault.judge or self.judge) for way in ways)
+        """Tell whether the results show a fault; where it raised, nothing came that could be compared."""
+        try:
+            if fault.when is not None:
+                return fault.when(cases)
+            came, judge = [case for case in cases if not isinstance(case.got, Raised)], fault.judge or self.judge
+            ways = fault.like if isinstance(fault.like, tuple) else (fault.like,)
+            return any(case.off for case in came) and any(_goes_like(way, came, judge) for way in ways)
+        except Exception:  # it does not know this kind of result
+            return False
 
     def _write_call(self, args: Args) -> str:
         """Write a call as a student would."""
         names = list(inspect.signature(self.reference).parameters)
         return f"{self.name}({', '.join(f'{name}={shown(arg)}' for name, arg in zip(names, args, strict=False))})"
+
+    def _other_name(self, mine: Any) -> str:
+        """Return a word on a function in the notebook that has the same arguments and another name."""
+        if getattr(mine, "__module__", "") != "__main__" or not hasattr(mine, "__globals__"):
+            return ""
+        names = list(inspect.signature(self.reference).parameters)
+        for name, other in mine.__globals__.items():
+            own = isinstance(other, FunctionType) and other is not mine and other.__module__ == "__main__"
+            if own and list(inspect.signature(other).parameters) == names and not name.startswith("_"):
+                return f"\nThis is about {mine.__name__}. Is {name} your answer? Then give it the name {self.name}."
+        return ""
 
 
 class Step:
@@ -221,19 +315,16 @@ class Step:
         return f"{self.name}: the lesson goes on with the library's, because yours is: {self.answer.verdict}."
 
 
-def _quietly(function: Callable[..., Any], args: Args) -> Any:
-    """Call a function without what it prints and warns: it is called hundreds of times."""
-    with redirect_stdout(io.StringIO()), warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore")
-        return function(*args)
+def _is_stub(got: Any) -> bool:
+    """Tell whether nothing was written yet: in a lesson, or in a problem set."""
+    if isinstance(got, Raised):
+        return isinstance(got.error, NotImplementedError)
+    return got is ... or (isinstance(got, Sequence) and any(part is ... for part in got))
 
 
 def _goes_like(way: Callable[..., Any], cases: list[Case], judge: Judge) -> bool:
-    """Tell whether the results are those of a faulty algorithm."""
-    try:
-        return all(judge(c.got, _quietly(way, copy.deepcopy(c.args)), c.args) is None for c in cases)
-    except Exception:  # it cannot do every case: then it is not what the student did
-        return False
+    """Tell whether the results are those of a faulty algorithm, which can do every case."""
+    return all(judge(c.got, quietly(way, copy.deepcopy(c.args)), c.args) is None for c in cases)
 
 
 def _accepts(function: Callable[..., Any], args: Args) -> bool:

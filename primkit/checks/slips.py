@@ -1,0 +1,186 @@
+"""Slips: the one place of a student's function where something else would make it right.
+
+Beside the story. A slip is a small thing in one place: a comparison, a sign, an axis, an order, one more or less,
+degrees. Each place of the student's own code is tried with what may have been meant, and the function runs again. What
+is told is the kind and the line, not what should stand there; and it is always so, because it was tried. Any algorithm
+will do, in any style; only the function's source must be at hand, as it is in a notebook.
+
+In:  the student's function, the cases, and how to see whether a function is right in a case.
+Out: up to three ``Slip`` that each mend all of it, or one or two that mend a part.
+
+>>> places([Slip("sign", Line(4, "y = a - b"), 9), Slip("order", Line(4, "y = a - b"), 9)])
+'line 4, `y = a - b`: a sign, or an order'
+"""
+
+from __future__ import annotations
+import __future__
+
+import ast
+import copy
+import inspect
+import textwrap
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+
+from .calls import Line, line_at
+from .edits import edits
+
+PROBES = 6  # wrong cases that an edit is tried on first
+PARTS = 6  # edits that mend some of these, which are tried on all cases when none mends all
+LEAST_PART = 0.2  # of the wrong cases that a slip must mend to be told
+MOST_TOLD = 3
+
+WORDS = {
+    "comparison": "a comparison",
+    "sign": "a sign",
+    "axis": "an axis (x or y, rows or columns)",
+    "order": "an order",
+    "off by one": "a number that is off by one",
+    "degrees": "degrees and radians",
+}
+
+
+@dataclass(frozen=True)
+class Slip:
+    """A place whose change mends some of the cases that are off, and breaks none."""
+
+    kind: str
+    line: Line
+    mends: int
+
+
+def places(slips: Sequence[Slip]) -> str:
+    """Write where to look: each line once, with all that may be wrong in it."""
+    lines: dict[Line, list[str]] = {}
+    for slip in slips:
+        lines.setdefault(slip.line, []).append(WORDS[slip.kind])
+    return "; or at ".join(f"{line}: {', or '.join(kinds)}" for line, kinds in lines.items())
+
+
+Holds = Callable[[Any, Any, float], bool]
+
+
+def find_slips(
+    mine: Any, wrong: Sequence[Any], right: Sequence[Any], holds: Holds, seconds: float, near: Line | None = None
+) -> list[Slip]:
+    """Return slips that mend every wrong case, the likely ones first; else up to two after each other that mend some.
+
+    ``holds(function, case, seconds)`` tells whether a function is right in a case, and takes at most so long; the whole
+    search takes at most ``seconds``. The lines about ``near`` are tried first.
+    """
+    code = _Code.of(mine, near)
+    end, found = time.monotonic() + seconds, list[Slip]()
+    while code and wrong and len(found) < 2:
+
+        def mended(edited: Any, cases: Sequence[Any]) -> list[Any]:
+            return [c for c in cases if (left := end - time.monotonic()) > 0 and holds(edited, c, left)]
+
+        whole, part = _search(code, wrong, right, mended, end)
+        if whole:
+            return [*found, *whole[: 1 if found else MOST_TOLD]]
+        if part is None:
+            break
+        slip, code, cases = part
+        found.append(slip)
+        done = set(map(id, cases))
+        wrong, right = [case for case in wrong if id(case) not in done], [*right, *cases]
+    return found
+
+
+def _search(
+    code: _Code,
+    wrong: Sequence[Any],
+    right: Sequence[Any],
+    mended: Callable[[Any, Sequence[Any]], list[Any]],
+    end: float,
+) -> tuple[list[Slip], tuple[Slip, _Code, list[Any]] | None]:
+    """Try each edit on a few cases, then those that did best on all; return what mends all, or else what mends most."""
+    probes = [wrong[n * (len(wrong) - 1) // (PROBES - 1)] for n in range(PROBES)] if len(wrong) > PROBES else wrong
+    whole: dict[str, Slip] = {}
+    parts: list[tuple[int, Slip, _Code]] = []
+    for rank in (0, 1):
+        for kind, number in edits(code.tree, code.name, rank, code.near):
+            edited = code.build() if time.monotonic() < end and kind not in whole else None
+            if edited is None:
+                continue
+            count = len(mended(edited, probes[:2])) and len(mended(edited, probes))
+            slip = Slip(kind, line_at(code.filename, number), len(wrong))
+            if count < len(probes):
+                if count and (len(parts) < PARTS or count > parts[-1][0]):
+                    parts = sorted([*parts, (count, slip, copy.deepcopy(code))], key=lambda part: -part[0])[:PARTS]
+            elif all(mended(edited, [case]) for case in wrong) and all(mended(edited, [case]) for case in right):
+                whole[kind] = slip
+        if whole:
+            return list(whole.values()), None
+    best: tuple[Slip, _Code, list[Any]] | None = None
+    for _, slip, edited_code in parts:
+        cases = mended(edited_code.build(), wrong)
+        more = len(cases) > max(LEAST_PART * len(wrong), len(best[2]) if best else 0)
+        if more and len(mended(edited_code.build(), right)) == len(right):
+            best = replace(slip, mends=len(cases)), edited_code, cases
+    return [], best
+
+
+@dataclass
+class _Code:
+    """The source of a function, with those of its helpers from the same file, as a tree that can be built again."""
+
+    name: str
+    filename: str
+    tree: ast.Module
+    names: dict[str, Any]
+    near: Line | None
+
+    def __deepcopy__(self, memo: Any) -> _Code:
+        return replace(self, tree=copy.deepcopy(self.tree, memo))
+
+    @classmethod
+    def of(cls, mine: Any, near: Line | None = None) -> _Code | None:
+        """Read a function's source; None where there is none."""
+        mine = inspect.unwrap(mine)
+        if not isinstance(mine, FunctionType):
+            return None
+        names = {**mine.__globals__, "_numpy": np}
+        names |= {
+            name: cell.cell_contents
+            for name, cell in zip(mine.__code__.co_freevars, mine.__closure__ or (), strict=True)
+        }
+        functions, todo = {}, [mine]
+        while todo:
+            function = todo.pop()
+            functions[function.__name__] = function
+            used = [names.get(name) for name in function.__code__.co_names + function.__code__.co_freevars]
+            todo += [
+                each
+                for each in used
+                if isinstance(each, FunctionType)
+                and each.__code__.co_filename == mine.__code__.co_filename
+                and each.__name__ not in functions
+            ]
+        body: list[ast.stmt] = []
+        try:
+            for function in functions.values():
+                lines, first = inspect.getsourcelines(function)
+                parsed = ast.parse(textwrap.dedent("".join(lines))).body[0]
+                if not isinstance(parsed, ast.FunctionDef):
+                    return None
+                parsed.decorator_list = []
+                body.append(ast.increment_lineno(parsed, first - 1))
+        except (OSError, SyntaxError, TypeError, IndexError):
+            return None
+        return cls(mine.__name__, mine.__code__.co_filename, ast.Module(body, []), names, near)
+
+    def build(self) -> Any:
+        """Return the function that the tree now says; None when it says nothing that Python knows."""
+        names = dict(self.names)
+        try:
+            tree = ast.fix_missing_locations(self.tree)
+            exec(compile(tree, "<slip>", "exec", flags=__future__.annotations.compiler_flag), names)
+        except (SyntaxError, ValueError, TypeError, NameError):
+            return None
+        return names.get(self.name)
