@@ -26,7 +26,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .arguments import Floats
+from .arguments import Floats, Ints
 from .found import Found
 from .measure import CELL, Detection, Frame, Other, Thing, Wall, as_detection
 from .robust.choice import CERTAIN, Choice
@@ -56,18 +56,21 @@ class Account:
         The frame.
     density : float
         Strays that were not linked to anything, for each square of the frame's unit.
+    scans : array of int, shape (N,)
+        The number of the scan that saw each point, 0 where it is not known.
     """
 
     points: Floats
     local: Floats
     frame: Frame
     density: float
+    scans: Ints
 
     @classmethod
-    def of(cls, points: Floats, local: Floats, frame: Frame, n_unlinked: int) -> Account:
+    def of(cls, points: Floats, local: Floats, frame: Frame, n_unlinked: int, scans: Ints) -> Account:
         """Return the account of points of which so many were linked to nothing: nobody chose to leave them out."""
         area = float(np.prod(np.ptp(local, axis=0) + CHANCE_AROUND))
-        return cls(points, local, frame, n_unlinked / area)
+        return cls(points, local, frame, n_unlinked / area, scans)
 
     def closed(self, things: Iterable[Thing]) -> Found:
         """Return everything in metres, from left to right, each point once, and the strays that are left."""
@@ -79,7 +82,8 @@ class Account:
             taken[np.searchsorted(every, _as_numbers(thing.points))] = True
             mine = taken[first_there] & left
             left &= ~mine
-            settled.append(replace(thing.in_metres(self.frame), points=self.points[mine]))
+            thing = replace(thing.in_metres(self.frame), points=self.points[mine])
+            settled.append(replace(thing, scans=self.scans[mine]) if isinstance(thing, Detection) else thing)
         shapes = sorted((t for t in settled if isinstance(t, Detection)), key=lambda d: tuple(d.shape.centroid))
         walls = sorted((t for t in settled if isinstance(t, Wall)), key=lambda w: tuple(w.start))
         others = sorted((t for t in settled if isinstance(t, Other)), key=lambda o: tuple(o.points.mean(axis=0)))

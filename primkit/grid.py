@@ -1,9 +1,10 @@
 """Grid: the points that all scans have seen, on cells of one millimetre.
 
 Fifth step of the story. Scans of the same wall from many poses fall into the same cells: each place counts once.
+Each cell remembers by which scan it was hit last: where a pose is wrong, all points of its scan are wrong together.
 
 In:  ``Scans`` (any number of times), or (N, 2) points in metres.
-Out: ``grid.points()``: the centres of the occupied cells, shape (N, 2), metres, world frame.
+Out: ``grid.points()``: the centres of the occupied cells, shape (N, 2), metres, world frame; ``grid.last_seen``.
 
 >>> grid = Grid(resolution=0.001)
 >>> grid.add([(0.1, 0.1), (0.10049, 0.1)])
@@ -39,28 +40,51 @@ class Grid:
     Raises ValueError if the resolution is not a finite number above zero.
 
     >>> grid = Grid()
-    >>> len(grid), grid.points().shape
-    (0, (0, 2))
+    >>> len(grid), grid.points().shape, grid.n_scans
+    (0, (0, 2), 0)
     """
 
     def __init__(self, resolution: float = 0.001) -> None:
         self.resolution = as_positive(resolution, "resolution")
-        self._keys = np.empty(0, dtype=np.int64)  # sorted, each occupied cell once
+        self.n_scans = 0  # how many scans were added
+        # Keys of the occupied cells, sorted, each once, and the scan that hit each last: one value, changed at once.
+        self._occupied = np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
 
     def add(self, seen: Scans | ArrayLike) -> None:
         """Occupy the cells that the hits of scans (or plain points, shape (N, 2), metres) fall into.
 
         Raises ValueError if a point is not finite or lies too far out for the grid; the grid then stays as it was.
         """
-        points = seen.points() if isinstance(seen, Scans) else as_points(seen)
-        keys = as_keys(self.to_cells(points))
+        points, scan, n_new = _hits_of(seen)
+        hit, last = np.unique(as_keys(self.to_cells(points))[::-1], return_index=True)
+        scan = scan[::-1][last]
         with ADDING:
-            self._keys = np.union1d(self._keys, keys)
+            keys, scans = self._occupied
+            scan = np.where(scan > 0, scan + self.n_scans, 0)
+            at = np.searchsorted(keys, hit)
+            known = keys.take(at, mode="clip") == hit if len(keys) else np.zeros(len(hit), dtype=bool)
+            scans = scans.copy()
+            scans[at[known]] = scan[known]
+            self._occupied = np.insert(keys, at[~known], hit[~known]), np.insert(scans, at[~known], scan[~known])
+            self.n_scans += n_new
 
     @property
     def cells(self) -> Ints:
         """Indices of the occupied cells, shape (N, 2), sorted: the order of adding leaves no trace."""
-        return as_cells(self._keys)
+        return as_cells(self._occupied[0])
+
+    @property
+    def last_seen(self) -> Ints:
+        """Number of the scan, from 1, that each cell was hit by last, shape (N,), in the order of ``cells``.
+
+        0 for a cell that a plain point fell into.
+
+        >>> grid = Grid()
+        >>> grid.add([(0.1, 0.1)])
+        >>> grid.last_seen.tolist()
+        [0]
+        """
+        return self._occupied[1].copy()
 
     def points(self) -> Floats:
         """Return the centres of the occupied cells, shape (N, 2), metres, in the order of ``cells``."""
@@ -88,13 +112,21 @@ class Grid:
         return (as_points(cells, "cells") + 0.5) * self.resolution
 
     def __len__(self) -> int:
-        return len(self._keys)
+        return len(self._occupied[0])
 
     def __repr__(self) -> str:
         return f"Grid: {count(len(self), 'occupied cell')} of {1000 * self.resolution:g} mm"
 
     def _repr_html_(self) -> str:
         return thumbnail(repr(self), dots=self.points())
+
+
+def _hits_of(seen: Scans | ArrayLike) -> tuple[Floats, Ints, int]:
+    """Return points, the scan that saw each, from 1, or 0 for plain ones, and how many scans there are."""
+    if isinstance(seen, Scans):
+        return seen.points(), np.nonzero(seen.hits)[0] + 1, len(seen)
+    points = as_points(seen)
+    return points, np.zeros(len(points), dtype=np.int64), 0
 
 
 def as_keys(cells: Ints) -> Ints:

@@ -14,15 +14,16 @@ Out: ``Detection``: the shape, its points, how closely they lie to it, and how c
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arguments import Floats, as_points, as_positive
+from .arguments import Floats, Ints, as_points, as_positive
 from .robust.candidates import candidates
 from .robust.choice import CERTAIN, Choice
 from .robust.deviations import Certainty
-from .robust.scatter import LEAST_SPREAD
+from .robust.scatter import LEAST_SPREAD, noise_of
 from .seen import seen_shares
 from .shapes import Circle, Kind, Polygon, Shape
 from .show import in_mm
@@ -78,6 +79,9 @@ class Frame:
         return local * self.unit + self.origin
 
 
+HERE = Frame(np.zeros(2), 1.0)  # the frame in which all was measured already
+
+
 @dataclass(frozen=True, eq=False)
 class Detection:
     """A shape that was found.
@@ -100,8 +104,12 @@ class Detection:
         What tells how sure the shape's numbers are; None from ``PAPER``, which does not ask.
     choice : Choice, optional
         How the shape was chosen; None from ``PAPER``.
-    unit : float
-        The length, metres, that ``sure`` and ``choice`` have for theirs: a thousand cells.
+    frame : Frame
+        The frame of ``choice``, and ``sure``.
+    scans : array of int, shape (N,), optional
+        The number of the scan that saw each of the points, 0 where it is not known; None where it is of none.
+    noise_std : float
+        By how much ranges err, as far as that was told, in the unit of the frame.
     """
 
     shape: Shape
@@ -111,7 +119,9 @@ class Detection:
     seen: tuple[float, ...] = ()
     sure: Certainty | Choice | None = field(default=None, repr=False)
     choice: Choice | None = field(default=None, repr=False)
-    unit: float = field(default=1.0, repr=False)
+    frame: Frame = field(default=HERE, repr=False)
+    scans: Ints | None = field(default=None, repr=False)
+    noise_std: float = field(default=0.0, repr=False)
 
     def in_metres(self, frame: Frame) -> Detection:
         """Return what was found in a frame, in metres."""
@@ -120,7 +130,7 @@ class Detection:
             shape = Circle(metres(shape.center), shape.radius * frame.unit)
         else:
             shape = Polygon(metres(shape.vertices))
-        return replace(self, shape=shape, points=metres(self.points), rms=self.rms * frame.unit, unit=frame.unit)
+        return replace(self, shape=shape, points=metres(self.points), rms=self.rms * frame.unit, frame=frame)
 
     def __repr__(self) -> str:
         centre, dimensions = in_mm(self.shape, self.measured)
@@ -133,7 +143,7 @@ class Detection:
 
         Like the next, it is worked out when it is asked for, and is empty from ``PAPER``, which does not ask.
         """
-        return tuple(self.unit * std for std in self._certainty.center_std)
+        return tuple(self.frame.unit * std for std in self._certainty.center_std)
 
     @property
     def dimension_std(self) -> tuple[float, ...]:
@@ -142,13 +152,14 @@ class Detection:
         Infinite for one that was not measured, because a side that it hangs on was never seen, or that is not even
         known to a centimetre.
         """
-        return tuple(self.unit * std for std in self._certainty.dimension_std)
+        return tuple(self.frame.unit * std for std in self._certainty.dimension_std)
 
-    @property
+    @cached_property
     def _certainty(self) -> Certainty:
         """How sure the numbers are; nothing where that is not asked."""
-        sure = self.sure.sure if isinstance(self.sure, Choice) else self.sure
-        return Certainty((), ()) if sure is None else sure
+        if isinstance(self.sure, Choice):
+            return self.sure.certainty(self.frame.local(self.points), self.scans, self.noise_std)
+        return Certainty((), ()) if self.sure is None else self.sure
 
     @property
     def margin(self) -> float:
@@ -284,7 +295,7 @@ def measure_shape(
     frame = Frame.of(points, as_positive(resolution, "resolution"))
     local, spread = frame.local(points), max(LEAST_SPREAD, spread / frame.unit)
     found = as_detection(Choice(local, candidates(local, spread, rng=rng), spread))
-    return None if found is None else found.in_metres(frame)
+    return None if found is None else replace(found.in_metres(frame), noise_std=noise_of(spread))
 
 
 def as_detection(choice: Choice) -> Detection | None:

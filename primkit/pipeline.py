@@ -17,21 +17,22 @@ any rotation, and lets the likelihood decide between circle and polygon.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from copy import copy
+from dataclasses import asdict, dataclass, replace
 from functools import partial
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .account import Account, things_of
-from .arguments import Floats, Labels, as_count, as_points, as_positive, as_rng, check_type, short
+from .arguments import Floats, Ints, Labels, as_count, as_points, as_positive, as_rng, check_type, doubt, short
 from .found import Found
 from .grid import Grid
 from .measure import CELL, Detection, Frame, Thing, detection
 from .paper import CIRCLE_TRIALS, LINE_TRIALS, ON_LINE, one_start_kmeans, shape_as_published
 from .robust.regroup import Group, explained, grown, regrouped
-from .robust.scatter import LEAST_SPREAD, SIGMAS, spread_across, spread_from_median, spread_of
+from .robust.scatter import LEAST_SPREAD, SIGMAS, noise_of, spread_across, spread_from_median, spread_of
 from .segmentation import Grouping, check_count, count_by_silhouette, segment
 from .shapes import KINDS, Kind
 from .steps import Steps
@@ -42,6 +43,7 @@ Memory = dict[
 ]  # groups as they were measured last, by their points
 
 SAME_SPREAD = 1.25  # fits are done anew when the spread comes out farther than this from what was supposed
+CONTRADICTED = 1.5  # neighbours scatter less than their noise lets them, if anything
 SPREAD_ROUNDS = 2  # from the neighbours' estimate, a third low at most, two rounds get there
 
 
@@ -64,7 +66,8 @@ class Settings:
         Fit every kind to every group. By default a group that leaves no doubt, see ``glance``, is fitted once: the
         same shape, several times faster.
     noise_std : float, optional
-        Standard deviation of the sensor's ranges in metres; found from the points when not given.
+        Standard deviation of the sensor's ranges in metres; found from the points when not given, or when they scatter
+        much farther (a ``LikelyWrong`` warning then says so).
     line_trials : int
         Samples for each line. Only for ``"published"``, like the next.
     circle_trials : int
@@ -166,7 +169,7 @@ def find_shapes(
     steps = Steps() if steps is None else steps
     check_type(steps, Steps, "steps must be Steps, such as Steps(fit_circle=mine)")
     kinds = _known(kinds)
-    points, resolution = _points_on_cells(points, resolution)
+    points, resolution, scans = _points_on_cells(points, resolution)
     if n_shapes is not None:
         check_count(n_shapes, points)
     if len(points) == 0 or n_shapes == 0:
@@ -174,15 +177,17 @@ def find_shapes(
     frame = Frame.of(points, resolution)
     local = frame.local(points)
     order = np.lexsort((local[:, 1], local[:, 0]))  # the order of seeing leaves no trace
-    points, local = points[order], local[order]
+    points, local, scans = points[order], local[order], scans[order]
     group_rng, measure_rng = as_rng(rng).spawn(2)
     labels = steps.labels(points, n_shapes)
     grouped = labels is not None
     if labels is None:
         labels = _groups(local, n_shapes, settings, group_rng)
     together = [local[labels == label] for label in range(labels.max() + 1)]
-    account = Account.of(points, local, frame, 0 if grouped else int(np.count_nonzero(labels < 0)))
+    account = Account.of(points, local, frame, 0 if grouped else int(np.count_nonzero(labels < 0)), scans)
     steps = steps.within(frame)
+    if settings.noise_std is not None:
+        settings = replace(settings, noise_std=settings.noise_std / frame.unit)
     found: list[Thing] = []
     if settings.method == "published":
         found += _as_published(together, settings, steps, measure_rng)
@@ -192,6 +197,8 @@ def find_shapes(
         groups, margins = _jointly(together, n_shapes, settings, kinds, memory, measure_rng)
         for group, margin in zip(groups, margins, strict=True):
             for thing in things_of(group.choice, margin, account):
+                if isinstance(thing, Detection):
+                    thing = replace(thing, noise_std=min(settings.noise_std or 0.0, noise_of(group.spread)))
                 own = steps.remeasured(thing, SIGMAS * group.spread) if isinstance(thing, Detection) else thing
                 found += [] if own is None else [own]
     return account.closed(found)
@@ -208,13 +215,16 @@ def _known(kinds: Sequence[Kind] | Kind | None) -> tuple[Kind, ...]:
     return names
 
 
-def _points_on_cells(points: Grid | ArrayLike, resolution: float | None) -> tuple[Floats, float]:
-    """Return points, shape (N, 2), and the side of their cells, both metres."""
+def _points_on_cells(points: Grid | ArrayLike, resolution: float | None) -> tuple[Floats, float, Ints]:
+    """Return points, shape (N, 2), the side of their cells, both metres, and the scan of each, 0 if it is not known."""
     if isinstance(points, Grid) or (hasattr(points, "resolution") and hasattr(points, "points")):  # a MovingGrid
         if resolution is not None:
             raise ValueError(f"resolution must not be given with a grid, which knows its own, got {short(resolution)}")
-        return points.points(), points.resolution
-    return as_points(points), CELL if resolution is None else as_positive(resolution, "resolution")
+        now: Any = copy(points)  # as it is now: another thread may add to it
+        return now.points(), now.resolution, now.last_seen
+    points = as_points(points)
+    unknown = np.zeros(len(points), dtype=np.int64)
+    return points, CELL if resolution is None else as_positive(resolution, "resolution"), unknown
 
 
 def _groups(points: Floats, n_shapes: int | None, settings: Settings, rng: np.random.Generator) -> Labels:
@@ -264,11 +274,15 @@ def _jointly(
 def _explain_all(
     together: list[Floats], settings: Settings, last: float | None, explain: Callable[[Floats, float], Group]
 ) -> tuple[list[Group], float]:
-    """Explain each group; the spread is given, or found from the points or the last call, and then from the fits."""
-    if settings.noise_std is not None:
-        spread = spread_across(settings.noise_std)
-        return [explain(points, spread) for points in together], spread
-    spread = last or _in_steps(spread_of(np.vstack([np.empty((0, 2)), *together])))
+    """Explain each group; the spread is told, or found from the points or the last call, and then from the fits.
+
+    What is told is not believed where neighbours scatter much farther.
+    """
+    seen = _in_steps(spread_of(np.vstack([np.empty((0, 2)), *together])))
+    told = None if settings.noise_std is None else spread_across(settings.noise_std)
+    if told is not None and seen <= CONTRADICTED * told:
+        return [explain(points, told) for points in together], told
+    spread = last or seen
     groups = [explain(points, spread) for points in together]
     for _ in range(SPREAD_ROUNDS):
         fitted = _spread_of_fits(groups)
@@ -276,6 +290,9 @@ def _explain_all(
             break
         spread = _in_steps(fitted)
         groups = [explain(points, spread) for points in together]
+    if told is not None:
+        times = f"{spread / told:.1f} times as far as that"
+        doubt(f"noise_std is contradicted by the points, which scatter {times}: they are believed instead", depth=3)
     return groups, spread
 
 

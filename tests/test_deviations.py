@@ -6,7 +6,7 @@ import pytest
 import primkit as pk
 from primkit.measure import measure_shape
 from primkit.robust.deviations import certainty, sides_seen
-from primkit.robust.scatter import CELL_STD, spread_across
+from primkit.robust.scatter import CELL_STD, MEAN_ACROSS, spread_across
 from tests.test_outlines import outline_of
 
 TRIANGLE = pk.Polygon([(-0.08, -0.05), (0.08, -0.05), (0.0, 0.09)])
@@ -42,7 +42,7 @@ def test_a_circles_deviation_has_a_closed_form():
     """All around, radius: std / sqrt(N); centre: std sqrt(2 / N)."""
     circle, rng = pk.Circle((0, 0), 0.1), np.random.default_rng(0)
     points = circle.outline(1000) * (1 + rng.normal(0, 0.002, 1000) / 0.1)[:, None]
-    sure = certainty(circle, points, 0.002)
+    sure = certainty(circle, points, 0.002, noise_std=0.002 / MEAN_ACROSS**0.5)
     assert sure.dimension_std[0] == pytest.approx(0.002 / np.sqrt(1000), rel=0.1)
     assert sure.center_std == pytest.approx([0.002 * np.sqrt(2 / 1000)] * 2, rel=0.1)
 

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments import Floats
+from ..arguments import Floats, Ints
 from ..circles import straightened
 from ..shapes import KINDS, Circle, Shape
 from .candidates import candidates, free_candidate
@@ -83,15 +83,15 @@ class Choice:
         """Which points lie deep inside the chosen shape, shape (N,): no beam gets there, unless it is two."""
         return self.distance < -(DEEP_CELLS * CELL + DEEP_NOISE * noise_of(self.spread))
 
-    @cached_property
-    def sure(self) -> Certainty:
-        """How sure the numbers of the chosen shape are; nothing without a shape."""
+    def certainty(self, points: Floats, scans: Ints | None, noise_std: float) -> Certainty:
+        """Return how sure the numbers of the chosen shape are, by points on it and their scans; see ``deviations``."""
         best = self.ranked[0] if self.ranked else None
         if best is None or best.figure is None:
             return Certainty((), ())
-        points = self.points[self.on_it]
-        middle = points.mean(axis=0)
-        return certainty(best.figure.moved(-middle), points - middle, self.spread, square=best.square)
+        middle, figure = points.mean(axis=0), best.figure
+        return certainty(
+            figure.moved(-middle), points - middle, self.spread, square=best.square, scans=scans, noise_std=noise_std
+        )
 
     @cached_property
     def margin(self) -> float:

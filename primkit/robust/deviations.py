@@ -1,38 +1,41 @@
-"""Certainty: how sure each number of a shape is, and which numbers were measured at all.
+"""Deviations: how sure each number of a shape is, and which numbers were measured at all.
 
-In:  a fitted figure, the points that lie on it, and how far they spread.
+In:  a fitted figure, the points that lie on it, how far they spread, and by which scan each was seen.
 Out: ``Certainty``: standard deviations of the centre's coordinates and of the dimensions, metres; infinite for a
 dimension that hangs on a side that was never seen, and for one that is not even known to a centimetre.
 
 >>> from primkit.shapes import Circle
 >>> ring = Circle((0, 0), 0.05).outline(100)
->>> sure = certainty(Circle((0, 0), 0.05), ring, 0.001)
+>>> sure = certainty(Circle((0, 0), 0.05), ring, 0.001, noise_std=0.001)
 >>> [round(1000 * s, 2) for s in sure.dimension_std]
-[0.03]
+[0.02]
 
-Two things make a side uncertain. Noise is drawn anew for every point and averages out: ``spread / sqrt(N)``. The
-grid's cells do not where a side runs along them: a wall at x = 0.1234 m falls into the cells at 0.1235 m from one
-end to the other, and no number of points tells. A turned side crosses many cells, and the error averages out too;
-without noise even faster than is stated here, so that the deviations are then an upper bound.
+The fitted numbers q are those for which the points' equations add up to zero, as at the end of ``refine_soft``:
 
-Sources: propagation of errors through the least-squares fit, as in any text on it; for unequal scatter White (1980), "A
-heteroskedasticity-consistent covariance matrix estimator"; for points of doubtful side Louis (1982), "Finding the
-observed information matrix when using the EM algorithm".
+    sum over points g(p; q) = 0,    g = share_k told(r) r dr/dq    summed over the sides k
+
+So a point that moves across by e moves them by A e, A = -(sum dg/dq)^-1 dg/de. Both slopes are differences: shares
+between sides, which noise around a corner blurs, and far points that are held back, are then as they were in the fit.
+What e is, ``covariance`` tells.
+
+Sources: Huber (1967), "The behavior of maximum likelihood estimates under nonstandard conditions".
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments import Floats
+from ..arguments import Floats, Ints
 from ..seen import seen_shares
 from ..shapes import Circle
+from .covariance import Linearised, covariance
 from .outlines import Outlines
 from .refine import shares
-from .scatter import CELL, CELL_STD, SIGMAS
+from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
 
 # A side was seen when so many points lie on it, over such a length [m] and such a share of it, and not near a corner,
 # where they may as well belong to the neighbour: a line over a hidden side touches the last points of both neighbours.
@@ -43,7 +46,7 @@ LEAST_SHARE = 0.4
 LEAST_OF_CIRCLE = 0.45
 CORNER_SPREADS = 4.0
 MOST_STD = 0.01  # m: what is not even known to a centimetre was not measured, but supposed
-STEP = 1e-6  # rad and m: the derivatives' step, far above rounding and far below any curvature
+STEP = 1e-6  # rad and m, and spreads: the derivatives' step, far above rounding and far below any curvature
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,15 @@ class Certainty:
     dimension_std: tuple[float, ...]
 
 
-def certainty(figure: Circle | Outlines, points: Floats, spread: float, *, square: bool = False) -> Certainty:
+def certainty(
+    figure: Circle | Outlines,
+    points: Floats,
+    spread: float,
+    *,
+    square: bool = False,
+    scans: Ints | None = None,
+    noise_std: float = 0.0,
+) -> Certainty:
     """Return the standard deviations of a fitted figure's centre and dimensions.
 
     Parameters
@@ -75,15 +86,24 @@ def certainty(figure: Circle | Outlines, points: Floats, spread: float, *, squar
         Standard deviation of the points from the outline, metres.
     square : bool
         Whether the outline was fitted with right angles.
+    scans : array of int, shape (N,), optional
+        The number of the scan that saw each point; 0 where it is not known.
+    noise_std : float
+        By how much ranges err on their own, as far as that is known, metres: what points of unknown scans scatter
+        beyond may be shared by all points of a scan.
     """
+    scans = np.zeros(len(points), dtype=np.int64) if scans is None else scans
     if isinstance(figure, Circle):
-        return _of_circle(figure, points)
+        x, y, radius = np.sqrt(np.diag(covariance(_of_circle(figure, points, spread), scans, noise_std))).tolist()
+        enough = seen_shares(figure, points)[0] >= LEAST_OF_CIRCLE and radius <= MOST_STD
+        return Certainty((x, y), (radius if enough else float("inf"),))
+    fitted = _fitted_numbers(figure, square)
+    spreads = fitted @ covariance(_of_sides(figure, points, spread, fitted), scans, noise_std) @ fitted.T
     seen = sides_seen(figure, points, spread)
-    covariance = _of_sides(figure, points, spread, square)
     rectangle = figure.kind == "rectangle"
     center, dimension = _derivatives(figure, rectangle)
     measured = _measured(figure, seen, square, rectangle)
-    return Certainty(_std(center, covariance, np.full(2, seen.all())), _std(dimension, covariance, measured))
+    return Certainty(_std(center, spreads, np.full(2, seen.all())), _std(dimension, spreads, measured))
 
 
 def _measured(figure: Outlines, seen: NDArray[np.bool_], square: bool, rectangle: bool) -> NDArray[np.bool_]:
@@ -114,63 +134,62 @@ def sides_seen(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bo
     return (own.sum(axis=0) >= LEAST_ON_SIDE) & (last - first >= np.maximum(LEAST_SEEN_STRETCH, LEAST_SHARE * inner))
 
 
-def _of_circle(circle: Circle, points: Floats) -> Certainty:
-    """Propagate the residuals through the geometric fit: (J'J)^-1 J' diag(r^2) J (J'J)^-1, J their slopes.
+def _of_circle(circle: Circle, points: Floats, spread: float) -> Linearised:
+    """Return a circle's fit to first order; its numbers are x, y and radius."""
 
-    Each residual stands for its own variance (White, 1980), because points at the ends of an arc scatter less across
-    it than those in its middle: there the beams graze.
-    """
-    bearing = np.arctan2(*(points - circle.center).T[::-1])
-    slopes = np.column_stack([np.cos(bearing), np.sin(bearing), np.ones(len(points))])
-    spare = len(points) / max(len(points) - 3, 1)
-    variance = np.maximum(circle.signed_distance(points) ** 2 * spare, CELL_STD**2)
-    inverse = np.linalg.pinv(slopes.T @ slopes)
-    covariance = inverse @ (slopes.T * variance) @ slopes @ inverse
-    x, y, radius = np.sqrt(np.diag(covariance)).tolist()
-    enough = seen_shares(circle, points)[0] >= LEAST_OF_CIRCLE and radius <= MOST_STD
-    return Certainty((x, y), (radius if enough else float("inf"),))
+    def slopes(figure: Circle, at: Floats) -> Floats:
+        outward = at - figure.center
+        return -np.column_stack([outward / np.hypot(*outward.T)[:, None], np.ones(len(at))])
 
+    def equations(step: Floats, at: Floats) -> Floats:
+        figure = Circle(circle.center + step[:2], circle.radius + step[2])
+        r = figure.signed_distance(at)
+        across, told = scatter(r, spread)
+        density = (1 - GHOSTS) * across / OUTLINE_LENGTH
+        return (density / (density + NOWHERE) * told * r)[:, None] * slopes(figure, at)
 
-def _of_sides(figure: Outlines, points: Floats, spread: float, square: bool) -> Floats:
-    """Return the covariance of the K angles and K offsets, shape (2 K, 2 K)."""
-    r, t = figure.distances(points)[0], figure.along(points)[0]
-    share = shares(points, figure, spread)[0][0]  # (N, K)
-    n_params = 5 if square else 2 * r.shape[1]
-    variance = max((share * r**2).sum() / max(share.sum() - n_params, 1.0), CELL_STD**2)
-    # A point that may be of either of two sides tells less about both (Louis, 1982).
-    told = np.maximum(share - share * (1 - share) * r**2 / variance, 0.0)
-    mass = np.maximum(told.sum(axis=0), 1.0)
-    middle = (told * t).sum(axis=0) / mass
-    lever = np.maximum((told * (t - middle) ** 2).sum(axis=0), 1e-12)
-    noise = variance - CELL_STD**2
-    stretch = np.sqrt(12 * lever / mass)  # the length that even points with this lever would cover
-    cells = _cell_variance(figure.angles[0], stretch, mass, noise)
-    offset_variance = noise / mass + cells
-    angle_variance = noise / lever + cells * mass / lever
-    k = len(mass)
-    if square:
-        angle_covariance = np.full((k, k), 1 / (1 / angle_variance).sum())
-    else:
-        angle_covariance = np.diag(angle_variance)
-    # An offset is that of the points' middle, plus the angle's error times the lever from the origin's foot.
-    to_offset = np.diag(middle) @ angle_covariance
-    return np.block(
-        [[angle_covariance, to_offset.T], [to_offset, np.diag(offset_variance) + to_offset @ np.diag(middle)]]
-    )
+    b = slopes(circle, points)
+    normals = -b[:, :2]
+    quarters = np.rint(np.arctan2(*normals.T) / (np.pi / 2)).astype(np.int64) % 4
+    effect, pulls = _effect(equations, points, normals, np.eye(3))
+    return Linearised(effect, b, pulls, circle.signed_distance(points), normals, points, quarters, circle.perimeter)
 
 
-def _cell_variance(angles: Floats, lengths: Floats, mass: Floats, noise: float) -> Floats:
-    """Return the variance of each side's offset that comes from the cells, shape (K,).
+def _of_sides(outline: Outlines, points: Floats, spread: float, fitted: Floats) -> Linearised:
+    """Return an outline's fit to first order; see ``_fitted_numbers``."""
+    k = outline.angles.shape[1]
 
-    Along a side the error in x repeats itself whenever x has moved on by a cell, and y likewise: so many
-    errors are averaged, not one for each point. Noise (its variance, square metres) of more than half a cell
-    shakes them apart.
-    """
-    normal = np.column_stack([np.cos(angles), np.sin(angles)])
-    moved = np.abs(normal[:, ::-1]) * lengths[:, None] / CELL  # cells passed in x and in y
-    together = ((normal * CELL_STD) ** 2 / np.clip(moved, 1.0, mass[:, None])).sum(axis=1)
-    shaken = np.exp(-((2 * np.pi / CELL) ** 2) * noise)
-    return shaken * together + (1 - shaken) * CELL_STD**2 / mass
+    def equations(step: Floats, at: Floats) -> Floats:
+        figure = Outlines(outline.angles + step[:k], outline.offsets + step[k:])
+        share, told, _ = shares(at, figure, spread)
+        pull = (share * told * figure.distances(at))[0]
+        return np.hstack([pull * figure.along(at)[0], -pull]) @ fitted
+
+    row, own = np.arange(len(points)), shares(points, outline, spread)[0][0].argmax(axis=1)
+    b = np.zeros((len(points), 2 * k))
+    b[row, own], b[row, k + own] = outline.along(points)[0][row, own], -1.0
+    normals = np.column_stack([np.cos(outline.angles[0]), np.sin(outline.angles[0])])[own]
+    effect, pulls = _effect(equations, points, normals, fitted.T)
+    begin, end = outline.spans()
+    r = outline.distances(points)[0][row, own]
+    return Linearised(effect, b @ fitted, pulls, r, normals, points, own, float((end - begin).sum()))
+
+
+def _fitted_numbers(outline: Outlines, square: bool) -> Floats:
+    """Return how the K angles and K offsets hang on the numbers that were fitted; right angles have one for all."""
+    each = np.eye(2 * outline.angles.shape[1])
+    return np.column_stack([each[:, :4].sum(axis=1), each[:, 4:]]) if square else each
+
+
+def _effect(
+    equations: Callable[[Floats, Floats], Floats], points: Floats, normals: Floats, numbers: Floats
+) -> tuple[Floats, Floats]:
+    """Return the effect and the pulls of ``Linearised`` for the numbers with which the equations add up to zero."""
+    still, step = np.zeros(numbers.shape[1]), STEP
+    by_points = equations(still, points + step * normals) - equations(still, points - step * normals)
+    by_numbers = [(equations(step * q, points) - equations(-step * q, points)).sum(axis=0) for q in numbers]
+    inverse = np.linalg.pinv(np.array(by_numbers).T / (2 * step))
+    return -inverse @ by_points.T / (2 * step), -inverse @ equations(still, points).T
 
 
 def _derivatives(figure: Outlines, rectangle: bool) -> tuple[Floats, Floats]:
