@@ -99,7 +99,7 @@ def resolution_of(found: Iterable[object]) -> float:
     """Return the side of the cells that shapes were found on, metres; 1 mm where nothing tells it."""
     if isinstance(found, Found):
         return found.resolution
-    return next((CELL * one.unit for one in found if isinstance(one, Detection)), CELL)
+    return next((CELL * one.frame.unit for one in found if isinstance(one, Detection)), CELL)
 
 
 FOUND_HEADER = ("", "kind", "centre x, y [mm]", "dimensions [mm]", "points", "rms [mm]", "certain")

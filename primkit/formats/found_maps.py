@@ -33,7 +33,7 @@ import numpy as np
 
 from ..arguments import Floats, as_positive, check_type
 from ..found import Found
-from ..measure import CELL, Detection, Other, Wall
+from ..measure import CELL, Detection, Frame, Other, Wall
 from .files import StrPath, as_path, naming
 from .maps import MAP_ENDINGS, as_json, feature_text, position_of, read_map, shape_of, shape_text, shown, write_map
 
@@ -140,7 +140,7 @@ def _line_text(kind: str, places: Sequence[Floats], known: Mapping[str, Any]) ->
 
 
 def _detection_of(feature: Any, known: dict[str, Any], unit: float) -> Detection:
-    """Return a shape with what the file tells of it; ``unit`` as for ``Detection``."""
+    """Return a shape with what the file tells of it; ``unit`` as for ``Frame``."""
     certain = known.get("certain")
     if not (certain is None or isinstance(certain, bool)):
         raise ValueError(f"certain must be true, false or null, got {shown(certain)}")
@@ -157,7 +157,7 @@ def _detection_of(feature: Any, known: dict[str, Any], unit: float) -> Detection
         _numbers(known, "seen", UNKNOWN),
         sure,
         sure,
-        unit,
+        Frame(np.zeros(2), unit),
     )
 
 

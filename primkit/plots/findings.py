@@ -34,7 +34,7 @@ from ..world import World
 from .labels import write_labels
 from .look import as_axes, check_look, draw_areas, draw_board, draw_center, draw_legend, marks, outlines, set_title
 
-DASHES, DOTS = (0, (3, 2)), (0, (1, 1))
+DASHED, DOTTED = (0, (3, 2)), (0, (1, 1))
 USUAL_CELLS = 1000  # along a board's side, where it is not known
 
 
@@ -144,8 +144,8 @@ def _draw_outline(ax: Axes, shape: Shape, item: Detection | Shape, own: ColorTyp
     if isinstance(item, Detection):
         seen = is_seen(ring, item.points, REACH / CELL * resolution_of([item]))
         bare = np.where(seen[:, None] & doubtful, np.nan, ring)
-        ax.plot(*bare.T, color=color, linewidth=1.2, linestyle=DASHES, zorder=3)
-    line = {"linestyle": DOTS} if doubtful else {"solid_capstyle": "butt"}
+        ax.plot(*bare.T, color=color, linewidth=1.2, linestyle=DASHED, zorder=3)
+    line = {"linestyle": DOTTED} if doubtful else {"solid_capstyle": "butt"}
     ax.plot(*np.where(seen[:, None], ring, np.nan).T, color=color, linewidth=2, zorder=3, **line)
     if doubtful:
         ax.plot(*shape.centroid, marker="$?$", color=color, markersize=marks(ax, 9), markeredgewidth=0, zorder=4)
@@ -163,7 +163,7 @@ def _draw_rest(ax: Axes, beside: Found) -> list[Shape]:
         ax.plot(*seen.T, "o", color="white", markeredgecolor=INK, markersize=marks(ax, 4.5), zorder=3.1)
     for other in beside.others:
         ring = np.vstack([other.outline, other.outline[:1]])
-        ax.plot(*ring.T, color=GREY, linewidth=1.8, linestyle=DASHES, zorder=2.9)
+        ax.plot(*ring.T, color=GREY, linewidth=1.8, linestyle=DASHED, zorder=2.9)
     ax.plot(*beside.strays.T, "o", color=GREY, ms=marks(ax, 2.2), markeredgewidth=0, zorder=2.8, label="stray")
     return [_box(other) for other in beside.others]
 
@@ -190,7 +190,7 @@ def _found_legend(found: bool, dashed: bool, walls: bool, strays: bool, truth: b
     """Return what the legend shows: only what there is; the rest bears its name beside it."""
     known: list[tuple[bool, Artist]] = [
         (found, Line2D([], [], color=INK, linewidth=2, label="found")),
-        (dashed, Line2D([], [], color=INK, linewidth=1.2, linestyle=DASHES, label="found, no point near")),
+        (dashed, Line2D([], [], color=INK, linewidth=1.2, linestyle=DASHED, label="found, no point near")),
         (walls, Line2D([], [], color=INK, linewidth=2, marker="o", markerfacecolor="white", ms=4, label="wall")),
         (strays, Line2D([], [], color=GREY, marker="o", ms=3, markeredgewidth=0, linestyle="none", label="stray")),
         (truth, Patch(facecolor=GREY, alpha=0.3, label="truth")),
