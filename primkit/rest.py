@@ -89,7 +89,7 @@ class Rest:
         walls = tuple(_match_wall(wall, world, within) for wall in found.walls)
         right = {wall.true for wall in walls if wall.right}
         off = [np.abs(shape.signed_distance(found.strays)) for shape in world.shapes]
-        off += [_distance(found.strays, wall) for wall in world.walls]
+        off += [distance_to_wall(found.strays, wall) for wall in world.walls]
         return cls(
             walls,
             tuple(k for k in range(len(world.walls)) if k not in right),
@@ -136,7 +136,7 @@ class Rest:
 def _match_wall(wall: Wall, world: World, within: float) -> WallMatch:
     """Return the wall that is there and lies nearest to both ends of one that was found."""
     ends = np.array([wall.start, wall.end])
-    off = [float(_distance(ends, there).max()) for there in world.walls]
+    off = [float(distance_to_wall(ends, there).max()) for there in world.walls]
     nearest = int(np.argmin(off)) if off else None
     least = min(off, default=float("inf"))
     right = least <= within
@@ -150,7 +150,7 @@ def _shape_under(points: Floats, shapes: Sequence[Shape], within: float, share: 
     return next((shape for shape, n in on_it if n >= share * max(1, len(points))), None)
 
 
-def _distance(points: Floats, wall: Floats) -> Floats:
+def distance_to_wall(points: Floats, wall: Floats) -> Floats:
     """Return how far points, shape (N, 2), lie from a wall, its two ends, shape (2, 2), metres."""
     along = wall[1] - wall[0]
     t = np.clip((points - wall[0]) @ along / (along @ along), 0, 1)

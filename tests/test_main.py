@@ -136,6 +136,15 @@ def test_help_loads_nothing_heavy():
     assert done.stdout.splitlines()[-1] == "[]"
 
 
+def test_a_board_is_drawn_without_scipy_and_matplotlib(tmp_path):
+    code = (
+        f"import sys; from primkit.__main__ import main; main(['make-map', '--out', {str(tmp_path / 'a.json')!r}])\n"
+        "print([name for name in ('scipy', 'sklearn', 'matplotlib', 'joblib') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
 # --- map ----------------------------------------------------------------------------------------------------
 
 

@@ -509,6 +509,25 @@ def test_a_board_of_another_size_has_its_own_units(k, unit, ax):
     assert plt.gca().get_xlim()[1] == pytest.approx(world.size * 0.53)
 
 
+def test_ghosts_are_four_cells_off_every_outline_and_wall(ax):
+    after = World([Circle((0, 0), 0.1)], walls=True)
+    points = [(0.1039, 0.0), (0.1041, 0.0), (0.4961, 0.2), (0.4959, 0.2), (0.3, 0.3)]
+    cases = [
+        (DISC, points, {}, [1, 3, 4], ["where it was", "point", "ghost"]),
+        (DISC, points, {"resolution": 0.002}, [4], ["where it was", "point", "ghost"]),
+        (after, points[:1], {}, [], ["point"]),
+        (after, points[-1:], {}, [0], ["ghost"]),
+    ]
+    for before, those, more, ghosts, words in cases:
+        ax.clear()
+        plot_change(before, after, those, ax, **more)
+        (crosses,) = [line.get_xydata() for line in ax.lines if line.get_marker() == "x"]
+        np.testing.assert_array_equal(crosses, np.reshape([those[k] for k in ghosts], (-1, 2)))
+        assert legend_of(ax) == words
+    ax.clear()
+    assert title(plot_change(DISC, World(), STRAY[:2], ax)) == "2 of 2 points are ghosts"
+
+
 def test_plain_shapes_have_no_dashes(ax):
     plot_found(FOUR_KINDS.shapes, ax=ax)
     assert not any(line.is_dashed() for line in ax.lines)

@@ -21,11 +21,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike, NDArray
 
-from ..arguments import Floats, Ints, as_count, as_points, check_type
+from ..arguments import Floats, Ints, as_count, as_points, as_positive, check_type
 from ..driving import Exploration
 from ..formats import Drive
 from ..grid import Grid
+from ..measure import CELL
 from ..palette import BLUE, GREY, INK, ORANGE, PALE, VERMILION
+from ..rest import distance_to_wall
 from ..table import count
 from ..world import World
 from .look import (
@@ -48,7 +50,7 @@ STRIP_HEAD = 0.8  # inches: title and legend
 DOTS: dict[str, Any] = {"marker": "o", "markeredgewidth": 0, "linestyle": "none"}
 SEEN_BEFORE, SEEN_NEW = DOTS | {"color": INK, "markersize": 2.2}, DOTS | {"color": VERMILION, "markersize": 3.4}
 WAY_LOOK: dict[str, Any] = {"color": BLUE, "linewidth": 1.0}
-GHOST_GAP = 0.004  # m: a point farther than this from every outline belongs to nothing that is there
+GHOST_CELLS = 4  # a point farther than this from every outline belongs to nothing that is there
 
 
 def plot_drive(world: World, drive: Drive, n_frames: int = 6) -> Figure:
@@ -127,7 +129,13 @@ def plot_tour(world: World, tour: Exploration, ax: Axes | None = None, *, title:
 
 
 def plot_change(
-    before: World, after: World, points: ArrayLike, ax: Axes | None = None, *, title: str | None = None
+    before: World,
+    after: World,
+    points: ArrayLike,
+    ax: Axes | None = None,
+    *,
+    resolution: float = CELL,
+    title: str | None = None,
 ) -> Axes:
     """Draw the points of a grid over a world in which something was moved; ghosts stand out.
 
@@ -136,29 +144,33 @@ def plot_change(
     before, after : World
         The truth as it was (dashed) and as it is (filled).
     points : array_like, shape (N, 2)
-        The grid's points, metres; those more than 4 mm from every outline that is there now are ghosts.
+        The grid's points, metres; those more than four cells from every outline and wall that is there now are ghosts.
     ax, title : optional
         As for ``plot_world``.
+    resolution : float
+        Side of the grid's cells, metres.
     """
     check_type(before, World, "before must be of type World")
     check_type(after, World, "after must be of type World")
     check_look(title)
-    points, ax = as_points(points), as_axes(ax)
-    off = np.full(len(points), np.inf)
-    for shape in after.shapes:
-        off = np.minimum(off, np.abs(shape.signed_distance(points)))
-    ghost = off > GHOST_GAP
+    points, ax, gap = as_points(points), as_axes(ax), GHOST_CELLS * as_positive(resolution, "resolution")
+    near = [np.abs(shape.signed_distance(points)) <= gap for shape in after.shapes]
+    near += [distance_to_wall(points, wall) <= gap for wall in after.walls]
+    ghost = ~np.any(near, axis=0) if near else np.ones(len(points), dtype=bool)
     draw_board(ax, after.size, points, legend=True, walls=after.walled)
     draw_areas(ax, after.shapes)
     dashed: dict[str, Any] = {"fill": False, "edgecolor": GREY, "linestyle": "--", "linewidth": marks(ax, 1.2)}
-    for shape in before.shapes:
-        if shape not in after.shapes:
-            ax.add_patch(patch(shape, **dashed))
+    gone = [shape for shape in before.shapes if shape not in after.shapes]
+    for shape in gone:
+        ax.add_patch(patch(shape, **dashed))
     ax.plot(*points[~ghost].T, "o", color=INK, markersize=marks(ax, 2.4), markeredgewidth=0, zorder=3)
     ax.plot(*points[ghost].T, "x", color=ORANGE, markersize=marks(ax, 4), zorder=4)
-    was = Line2D([], [], color=GREY, linestyle="--", label="where it was")
-    here = Line2D([], [], color=INK, marker="o", markersize=3, linestyle="none", label="point")
-    draw_legend(ax, [was, here, Line2D([], [], color=ORANGE, marker="x", linestyle="none", label="ghost")])
+    known = [
+        (len(gone) > 0, Line2D([], [], color=GREY, linestyle="--", label="where it was")),
+        (not ghost.all(), Line2D([], [], color=INK, marker="o", markersize=3, linestyle="none", label="point")),
+        (ghost.any(), Line2D([], [], color=ORANGE, marker="x", linestyle="none", label="ghost")),
+    ]
+    draw_legend(ax, [artist for there, artist in known if there])
     set_title(ax, f"{ghost.sum()} of {len(points)} points are ghosts", title)
     return ax
 
