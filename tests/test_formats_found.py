@@ -30,10 +30,10 @@ FOUND = {
 
 def numbers(found):
     """All that is known of what was found, as plain numbers."""
-    shapes = [
-        [one.points, one.rms, one.margin, one.count_margin, one.certain, one.center_std, one.dimension_std, one.seen]
-        for one in found
-    ]
+    shapes = []
+    for one in found:
+        sure = [one.margin, one.count_margin, one.certain, one.center_std, one.dimension_std]
+        shapes.append([one.points, one.rms, *sure, one.seen, [] if one.scans is None else one.scans])
     walls = [[wall.start, wall.end, wall.points, wall.std, wall.ends_seen] for wall in found.walls]
     others = [[other.points, other.outline] for other in found.others]
     return [np.ravel(v) for part in (*shapes, *walls, *others, [found.strays, found.resolution]) for v in part]
@@ -106,6 +106,7 @@ WRONG = {
     "sure of what": (POINT, {"radius": 1, "certain": 1}, "certain must be true, false or null, got 1"),
     "an rms": (POINT, {"radius": 1, "rms": [1]}, "rms must be a number or null, got [1]"),
     "a share": (POINT, {"radius": 1, "seen": [True]}, "seen must be a number or null, got true"),
+    "scans": (POINT, {"radius": 1, "scans": [0.5]}, "scans must be whole numbers >= 0, got others"),
     "shares": (POINT, {"radius": 1, "seen": 1}, "seen must be a list of numbers, got 1"),
     "points": (POINT, {"radius": 1, "points": [[0]]}, "a position must be two or three finite numbers, got [0]"),
 }

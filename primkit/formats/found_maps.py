@@ -31,7 +31,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import Floats, as_positive, check_type
+from ..arguments import Floats, Ints, as_positive, check_type
 from ..found import Found
 from ..measure import CELL, Detection, Frame, Other, Wall
 from .files import StrPath, as_path, naming
@@ -124,7 +124,7 @@ def _known_of(one: Detection) -> dict[str, Any]:
     told |= {"certain": None if one.choice is None else one.certain, "seen": one.seen}
     for name, stds in (("center_std", one.center_std), ("dimension_std", one.dimension_std)):
         told[name] = [std if isfinite(std) else None for std in stds]
-    return told | {"n_points": len(one.points), "points": one.points}
+    return told | {"n_points": len(one.points), "points": one.points, "scans": one.scans}
 
 
 def _known_of_wall(wall: Wall) -> dict[str, Any]:
@@ -158,7 +158,18 @@ def _detection_of(feature: Any, known: dict[str, Any], unit: float) -> Detection
         sure,
         sure,
         Frame(np.zeros(2), unit),
+        _scans_of(known),
     )
+
+
+def _scans_of(known: dict[str, Any]) -> Ints | None:
+    """Return the number of the scan that saw each point; None where none is told."""
+    if known.get("scans") is None:
+        return None
+    scans = np.array(_numbers(known, "scans", UNKNOWN))
+    if not ((scans >= 0) & (scans < 2**53) & (scans == np.round(scans))).all():
+        raise ValueError("scans must be whole numbers >= 0, got others")
+    return scans.astype(np.int64)
 
 
 def _wall_of(ends: Floats, known: dict[str, Any]) -> Wall:
