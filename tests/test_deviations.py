@@ -1,5 +1,7 @@
 """Standard deviations: right on average over many draws, and infinite for what was never seen."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -141,3 +143,55 @@ def test_arcs_under_noise_have_honest_deviations():
     assert len(z) > 50
     assert 0.88 <= np.mean(np.abs(z) < 1.96) <= 1.0
     assert abs(np.mean(z)) < 0.4
+
+
+def errors_over_deviations(n, *, cell=0.001, noise=0.0, slip=0.0, bare=False):
+    """Return the errors of centres and dimensions over their deviations, of a turned shape on each of n boards."""
+    z = []
+    for seed in range(n):
+        rng = np.random.default_rng([23, seed])
+        world = pk.random_world(1, style="free", rng=rng)
+        scans, grid = pk.scan(world, pk.teleport_poses(world), pk.Lidar(noise_std=noise), rng=rng), pk.Grid(cell)
+        slips = np.column_stack([rng.normal(0, slip, (len(scans), 2)), np.zeros(len(scans))])
+        grid.add(replace(scans, poses=scans.poses + slips))
+        found = pk.find_shapes(grid.points() if bare else grid, resolution=cell if bare else None, rng=0)
+        for match in pk.evaluate(found, world).matches:
+            if match.kind_right:
+                one = next(one for one in found if one.shape is match.found)
+                z += [*match.center_error / one.center_std, *np.divide(match.dimension_error, one.dimension_std)]
+    return np.array(z)
+
+
+SEEN = {
+    "cells of 2 mm": {"cell": 0.002},
+    "noise of 5 mm": {"noise": 0.005},
+    "a slip of 1 mm": {"slip": 0.001},
+    "a slip of 1 mm, and noise": {"slip": 0.001, "noise": 0.002},
+}
+
+
+@pytest.mark.parametrize("how", SEEN.values(), ids=SEEN)
+def test_errors_are_as_large_as_stated(how):
+    """On 40 boards; on a thousand: ``python -m tests.benchmarks.calibration``."""
+    z = errors_over_deviations(40, **how)
+    assert 0.75 < z.std() < 1.2
+    assert 0.9 <= np.mean(np.abs(z) < 1.96) <= 0.99
+
+
+def test_e16_points_alone_do_not_hide_that_poses_slipped():
+    """Nobody knows which of them slipped together: that they may have, is stated."""
+    z = errors_over_deviations(40, slip=0.002, bare=True)
+    assert np.mean(np.abs(z) < 1.96) >= 0.9
+
+
+def test_points_alone_are_as_sure_as_a_grid_when_the_noise_is_told():
+    world = pk.random_world(1, style="free", kinds=("rectangle",), rng=3)
+    grid = pk.Grid()
+    grid.add(pk.scan(world, pk.teleport_poses(world), pk.Lidar(noise_std=0.003), rng=0))
+    told = pk.Settings(noise_std=0.003)
+    by_grid, alone, and_told = (
+        np.array(pk.find_shapes(seen, settings=how, rng=0)[0].dimension_std)
+        for seen, how in ((grid, pk.ROBUST), (grid.points(), pk.ROBUST), (grid.points(), told))
+    )
+    np.testing.assert_allclose(and_told, by_grid, rtol=0.2)
+    assert (alone > 1.3 * and_told).all()

@@ -1,5 +1,8 @@
 """The grid: which cell a point falls into, and where a cell's centre lies."""
 
+import pickle
+from copy import copy
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -267,3 +270,45 @@ RESOLUTION_FAILURES = {
 def test_resolution_failure(resolution, sentence):
     with pytest.raises(ValueError, match=exactly(sentence)):
         Grid(resolution)
+
+
+# --- Which scan hit a cell last -------------------------------------------------------------------------------
+
+
+def test_last_seen_is_the_scan_that_hit_a_cell_last():
+    world, poses = random_world(2, rng=4), [(0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.0, 0.0)]
+    scans, grid = scan(world, poses), Grid()
+    grid.add(scans[:2])
+    grid.add([(0.9, 0.9)])
+    grid.add(scans[2:])
+    last = {tuple(cell): 0 for cell in grid.to_cells([(0.9, 0.9)]).tolist()}
+    for number in range(3):
+        last |= {tuple(cell): number + 1 for cell in grid.to_cells(scans[number : number + 1].points()).tolist()}
+    assert grid.n_scans == 3
+    assert dict(zip(map(tuple, grid.cells.tolist()), grid.last_seen.tolist(), strict=True)) == last
+    assert 1 not in grid.last_seen.tolist()  # the third scan stands where the first stood
+
+
+def test_last_seen_stays_with_a_copy_and_a_pickle():
+    grid = Grid()
+    grid.add(scan(random_world(2, rng=4), teleport_poses(random_world(2, rng=4))))
+    for again in (copy(grid), pickle.loads(pickle.dumps(grid))):
+        again.add([(0.9, 0.9)])
+        assert len(again) == len(grid) + 1
+        np.testing.assert_array_equal(again.last_seen[again.last_seen > 0], grid.last_seen)
+
+
+def test_last_seen_is_a_copy():
+    grid = filled([(0.1, 0.1)])
+    grid.last_seen[:] = 5
+    assert grid.last_seen.tolist() == [0]
+
+
+def test_all_in_one_call_is_scan_after_scan():
+    world = random_world(3, rng=8)
+    scans, whole, one_by_one = scan(world, teleport_poses(world)), Grid(), Grid()
+    whole.add(scans)
+    for number in range(len(scans)):
+        one_by_one.add(scans[number : number + 1])
+    np.testing.assert_array_equal(whole.cells, one_by_one.cells)
+    np.testing.assert_array_equal(whole.last_seen, one_by_one.last_seen)
