@@ -150,7 +150,7 @@ def test_a_start_at_a_wall(seed):
 
 def test_an_empty_board():
     tour = pk.explore(pk.World(), rng=0)
-    assert (tour.found, tour.why) == ((), "all is seen")
+    assert (tour.found, tour.why) == ([], "all is seen")
     assert tour.n_scans < 20
 
 

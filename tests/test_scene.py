@@ -152,7 +152,7 @@ def test_the_automatic_movements_are_the_library_s(world):
         explored.robot_time,
         len(explored.found),
     )
-    assert tour.score == pk.evaluate(list(explored.found), world).weighted_accuracy
+    assert tour.score == pk.evaluate(explored.found, world).weighted_accuracy
     assert (hand.n_scans, hand.robot_time, hand.score) == (2, pytest.approx(0.1), state.score)
 
 
@@ -211,9 +211,10 @@ def test_the_robot_does_not_wait_for_the_shapes(world):
 
 
 def test_one_look_at_a_time():
-    finder, points = Finder(later := Later()), pk.Circle((0.1, 0.0), 0.06).outline(150)
+    finder, mapper = Finder(later := Later()), pk.Mapper(rng=0)
     for n_scans in (3, 4):
-        finder.look(points[: 40 * n_scans], n_scans)
+        mapper.add(pk.Circle((0.1, 0.0), 0.06).outline(150)[: 40 * n_scans])
+        finder.look(mapper, n_scans)
         assert finder.busy
         assert finder.news() is None
     later.work_one()
@@ -225,16 +226,16 @@ def test_one_look_at_a_time():
 def test_of_very_many_cells_a_look_takes_a_part_and_the_last_look_all(world, monkeypatch):
     """So that neither its time nor its memory grows with the drive."""
     looked_at = []
-    monkeypatch.setattr("primkit.scene.finder.find_shapes", lambda points, **_: looked_at.append(points) or [])
+    monkeypatch.setattr(pk.Mapper, "look", lambda _, grid: looked_at.append(len(grid)) or pk.find_shapes([]))
     state, rng = DriveState(world), np.random.default_rng(0)
     for _ in range(8):
         state.grid.add(rng.uniform(-0.4, 0.4, (2000, 2)))
         state.step()
     assert len(state.grid) > 2 * MOST_CELLS
-    assert max(map(len, looked_at)) <= MOST_CELLS
-    assert len(looked_at[-1]) > MOST_CELLS / 2
+    assert max(looked_at) <= MOST_CELLS
+    assert looked_at[-1] > MOST_CELLS / 2
     state.finish()
-    assert len(looked_at[-1]) == len(state.grid)
+    assert looked_at[-1] == len(state.grid)
 
 
 def test_what_is_looked_at_grows_with_the_map():
@@ -303,7 +304,7 @@ def test_who_drives_hears_of_a_look_that_failed_and_drives_on(scene, monkeypatch
     def broken(*_args, **_kwargs):
         raise ArithmeticError("lost count")
 
-    monkeypatch.setattr("primkit.scene.finder.find_shapes", broken)
+    monkeypatch.setattr(pk.Mapper, "look", broken)
     for _ in range(3):
         scene.answer({"do": "step", "held": ["forward"]})
     assert any("failed, the drive goes on: ArithmeticError: lost count" in (m.get("say") or "") for m, _ in scene.sent)

@@ -24,14 +24,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arguments import Bools, Floats, as_count, as_rng, check_type
-from ..grid import Grid
+from ..found import Found
 from ..lidar import Lidar, Scans, as_lidar, scan
-from ..measure import Detection
-from ..pipeline import Memory, find_shapes
 from ..robot import BODY, PERIOD, advance, start_pose
 from ..show import thumbnail
 from ..table import count
 from ..world import World
+from .mapper import Mapper
 from .next_views import View, next_view, shown_from
 from .seen_map import EXPLAINED, SQUARE, SeenMap, open_outlines
 from .ways import Ways, forward, ways_from, wheels_along
@@ -54,7 +53,7 @@ class Exploration:
     poses : array, shape (P, 3)
         Where it scanned: x [m], y [m], heading [rad], world frame.
     scans : Scans, what it saw from there
-    found : tuple of Detection, from left to right
+    found : Found, the shapes from left to right, and what else the points are
     wheels : array, shape (T, 2)
         How it drove: speeds of the left and the right wheel, rad/s, each pair held for a period of 0.1 s.
     path : array, shape (T + 1, 3)
@@ -69,7 +68,7 @@ class Exploration:
 
     poses: Floats
     scans: Scans
-    found: tuple[Detection, ...]
+    found: Found
     wheels: Floats
     path: Floats
     robot_time: float
@@ -138,11 +137,10 @@ class _Tour:
         self.wheels: list[Floats] = []
         self.scans: list[Scans] = []
         self.scan_rng, find_rng = rng.spawn(2)
-        self.seed, self.memory = int(find_rng.integers(2**63)), Memory()
-        self.board, self.grid = SeenMap(world.size), Grid()
+        self.board, self.mapper = SeenMap(world.size), Mapper(rng=find_rng)
         self.vain = np.zeros(self.board.free.shape, dtype=np.int64)  # how often each square was looked at in vain
         self.been = np.zeros(self.vain.shape, dtype=bool)  # squares that were scanned from
-        self.found: list[Detection] = []
+        self.found = Found()
         self.found_from = 0  # points that this was made of
         self.inside = self.explained = np.zeros(self.vain.shape, dtype=bool)
 
@@ -150,7 +148,7 @@ class _Tour:
         """Scan, and learn from it."""
         seen = scan(self.world, self.path[-1], self.lidar, rng=self.scan_rng)
         self.scans.append(seen)
-        self.grid.add(seen)
+        self.mapper.add(seen)
         self.board.add(seen, self.lidar.range_min, self.lidar.range_max)
         i, j = self.board.index(self.path[-1][:2])
         self.been[i, j] = True
@@ -175,10 +173,9 @@ class _Tour:
 
     def find(self) -> bool:
         """Ask what the points so far are; False when there are no new ones."""
-        if len(self.grid) == self.found_from:
+        if len(self.mapper.grid) == self.found_from:
             return False
-        self.found = find_shapes(self.grid, memory=self.memory, rng=self.seed)
-        self.found_from = len(self.grid)
+        self.found, self.found_from = self.mapper.found, len(self.mapper.grid)
         shapes = [one.shape for one in self.found]
         self.inside, self.explained = self.board.covered(shapes, 0.0), self.board.covered(shapes, EXPLAINED)
         return True
@@ -220,4 +217,4 @@ class _Tour:
         scans = Scans(poses, self.lidar.angles, ranges, np.zeros(len(poses), dtype=bool))
         wheels = np.array(self.wheels).reshape(-1, 2)
         time = PERIOD * len(wheels) + self.lidar.period * len(scans)
-        return Exploration(poses, scans, tuple(self.found), wheels, np.array(self.path), time, why)
+        return Exploration(poses, scans, self.found, wheels, np.array(self.path), time, why)

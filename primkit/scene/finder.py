@@ -1,11 +1,13 @@
 """Finder: look for shapes beside the drive, so that the robot never waits for them.
 
-In:  the points of the grid, again and again, while the map grows.
+In:  a ``Mapper``, again and again, while its map grows.
 Out: ``Look``: the shapes of the last look that is done, and how many scans it knew.
 
+>>> from primkit.driving.mapper import Mapper
 >>> from primkit.shapes import Circle
->>> finder = Finder(AtOnce())
->>> finder.look(Circle((0.1, 0.0), 0.06).outline(150), n_scans=7)
+>>> finder, mapper = Finder(AtOnce()), Mapper(rng=0)
+>>> mapper.add(Circle((0.1, 0.0), 0.06).outline(150))
+>>> finder.look(mapper, n_scans=7)
 >>> look = finder.news()
 >>> [one.kind for one in look.found], look.n_scans, finder.news()
 (['circle'], 7, None)
@@ -19,14 +21,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from copy import copy
 from dataclasses import dataclass
 from typing import ParamSpec, TypeVar
 
 import numpy as np
 
-from ..arguments import Bools, Floats, Ints
-from ..measure import Detection
-from ..pipeline import Memory, find_shapes
+from ..arguments import Bools, Ints
+from ..driving.mapper import Mapper
+from ..found import Found
+from ..grid import Grid
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -63,7 +67,7 @@ def beside() -> Executor:
 class Look:
     """The shapes that were found, from left to right, and how many scans the points were made of."""
 
-    found: list[Detection]
+    found: Found
     n_scans: int
 
 
@@ -88,39 +92,35 @@ def thin_out(cells: Ints, most: int = MOST_CELLS) -> Bools:
 
 
 class Finder:
-    """Looks for shapes among points that grow, one look at a time.
+    """Looks for shapes in maps that grow, one look at a time.
 
     Parameters
     ----------
     executor : Executor
         Who does the work: ``AtOnce()``, ``beside()``, or any other of ``concurrent.futures`` within this process.
-    rng : int
-        Seed for the search.
     """
 
-    def __init__(self, executor: Executor, rng: int = 0) -> None:
-        self._executor, self._seed = executor, rng
-        self.forget()
+    def __init__(self, executor: Executor) -> None:
+        self._executor = executor
+        self._under_way: Future[Look] | None = None
 
     def forget(self) -> None:
-        """Begin anew with other points; a look that is still under way is dropped."""
-        self._memory: Memory = {}
-        self._under_way: Future[Look] | None = None
+        """Drop a look that is still under way."""
+        self._under_way = None
 
     @property
     def busy(self) -> bool:
         """Whether a look is under way, or its shapes have not been fetched yet."""
         return self._under_way is not None
 
-    def look(self, points: Floats, n_scans: int) -> None:
-        """Begin to look for shapes among points, shape (N, 2), metres; while another look lasts, do nothing."""
+    def look(self, mapper: Mapper, n_scans: int, most: int = MOST_CELLS) -> None:
+        """Begin to look at a map as it is now, or at so many of its cells; while another look lasts, do nothing."""
         if self._under_way is None:
-            memory, seed = self._memory, self._seed
-
-            def work() -> Look:
-                return Look(find_shapes(points, memory=memory, rng=seed), n_scans)
-
-            self._under_way = self._executor.submit(work)
+            grid = copy(mapper.grid)
+            if len(grid) > most:
+                grid = Grid(grid.resolution)
+                grid.add(mapper.grid.points()[thin_out(mapper.grid.cells, most)])
+            self._under_way = self._executor.submit(lambda: Look(mapper.look(grid), n_scans))
 
     def news(self, *, wait: bool = False) -> Look | None:
         """Return the look that was begun, once it is done (``wait`` for that), and once only; None without news.
@@ -128,17 +128,13 @@ class Finder:
         Raises
         ------
         Exception
-            Whatever ended the look, if it could not be finished. The next look is then a fresh one.
+            Whatever ended the look, if it could not be finished.
         """
         look = self._under_way
         if look is None or not (wait or look.done()):
             return None
         self._under_way = None
-        try:
-            return look.result()
-        except Exception:
-            self._memory = {}
-            raise
+        return look.result()
 
     def close(self) -> None:
         """Let the executor go, without waiting; looks that are asked for later are done at once."""

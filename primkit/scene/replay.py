@@ -22,10 +22,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import Ints, check_type
+from ..driving.mapper import Mapper
 from ..evaluation import evaluate
 from ..formats import Drive
 from ..grid import Grid
-from ..pipeline import Memory, find_shapes
 from ..table import count
 from ..world import World
 from .finder import Look
@@ -80,16 +80,16 @@ class Film:
         order = np.argsort(scan_of, kind="stable")
         self.cells: Ints = cells[order]  # in the order in which they were seen, shape (M, 2)
         self.known: Ints = np.searchsorted(scan_of[order], np.arange(len(drive)), side="right")  # after each scan
-        self.looks = self._looked_at(grid, rng)
+        self.looks = self._looked_at(drive, rng)
 
-    def _looked_at(self, grid: Grid, rng: int) -> list[Look]:
+    def _looked_at(self, drive: Drive, rng: int) -> list[Look]:
         """Return the shapes on the way, whenever the map has grown enough, and in the end."""
-        memory: Memory = {}
-        looks, n_looked_at, last = [], 0, len(self.known) - 1
-        for number, n in enumerate(self.known.tolist()):
-            if n > n_looked_at and (n >= GROWTH * n_looked_at or number == last):
-                points = grid.to_points(self.cells[:n])
-                looks.append(Look(find_shapes(points, memory=memory, rng=rng), number + 1))
+        looks, n_looked_at, mapper = [], 0, Mapper(rng=rng)
+        for number in range(len(drive)):
+            mapper.add(drive.scans[number : number + 1])
+            n = len(mapper.grid)
+            if n > n_looked_at and (n >= GROWTH * n_looked_at or number == len(drive) - 1):
+                looks.append(Look(mapper.found, number + 1))
                 n_looked_at = n
         return looks
 

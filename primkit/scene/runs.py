@@ -73,6 +73,6 @@ def _scan_from_waypoints(world: World, lidar: Lidar, rng: int) -> Run:
 def _explore(world: World, lidar: Lidar, rng: int) -> Run:
     """Let the robot find its own way, and find what is there."""
     tour = explore(world, lidar, rng=rng)
-    score, places = evaluate(list(tour.found), world).weighted_accuracy, tour.poses[:, :2]
+    score, places = evaluate(tour.found, world).weighted_accuracy, tour.poses[:, :2]
     note = "it drives, stands still, and scans"
     return Run("explore", tour.n_scans, tour.robot_time, len(tour.found), score, note, places)

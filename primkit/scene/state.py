@@ -31,17 +31,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arguments import Ints, check_type
+from ..driving.mapper import Mapper
 from ..driving.moving_grid import MovingGrid
 from ..driving.seen_map import EXPLAINED, SeenMap
 from ..evaluation import evaluate
 from ..formats import DriveJournal, record_drive
+from ..found import Found
 from ..grid import Grid
 from ..lidar import Lidar, Scans, as_lidar, scan
-from ..measure import Detection
 from ..robot import advance, start_pose
 from ..table import Table
 from ..world import World
-from .finder import MOST_CELLS, AtOnce, Finder, thin_out
+from .finder import MOST_CELLS, AtOnce, Finder
 from .keys import STANDING_WHEELS
 from .moved_shape import find_left_within, move_one_shape
 from .runs import Run, automatic_runs, compare_runs
@@ -95,19 +96,18 @@ class DriveState:
             raise ValueError(f"journal must be a file name that ends in .jsonl, got {self.journal.name}")
         self._start_world = world
         self._written: DriveJournal | None = None
-        self.finder = Finder(AtOnce() if executor is None else executor, rng)
+        self.finder = Finder(AtOnce() if executor is None else executor)
         self.undo()
         self.finish()
 
     def undo(self) -> None:
         """Go back to the start and forget all that was seen; what was written to a journal stays."""
         self._end_journal()
-        self.finder.forget()
         self.trouble = ""  # why the journal could not be written, in one sentence
         self.world, self.pose, self.n_scans, self.stopped = self._start_world, start_pose(self._start_world), 0, False
-        self.grid: Grid | MovingGrid = MovingGrid(lidar=self.lidar) if self.moving else Grid()
+        self._map_anew(MovingGrid(lidar=self.lidar) if self.moving else Grid())
         self._cells = self.grid.cells  # as they were told last
-        self.found = list[Detection]()
+        self.found = Found()
         self.n_scans_found = 0  # how many scans the shapes were found in
         self.seen_map = SeenMap(self.world.size)
         self._rng, self._hand = np.random.default_rng(self.seed), np.random.default_rng([self.seed, 1])
@@ -115,6 +115,16 @@ class DriveState:
         self._rests = True  # stands, or sees nothing new
         self._scan()
         self.map()
+
+    def _map_anew(self, grid: Grid | MovingGrid) -> None:
+        """Go on with a grid, and forget all fits so far."""
+        self.finder.forget()
+        self._mapper = Mapper(grid=grid, rng=self.seed)
+
+    @property
+    def grid(self) -> Grid | MovingGrid:
+        """All cells that were hit; where things may move, those that still stand."""
+        return self._mapper.grid
 
     def step(self, wheels: ArrayLike = STANDING_WHEELS) -> Step:
         """Turn the wheels for a period, scan, and map: ``move`` and ``map`` together.
@@ -152,9 +162,8 @@ class DriveState:
 
     def _begin_look(self, most: int = MOST_CELLS) -> None:
         """Have the map looked at, or so many of its cells."""
-        cells = self.grid.cells
         self._n_news = 0
-        self.finder.look(self.grid.points()[thin_out(cells, most)], self.n_scans)
+        self.finder.look(self._mapper, self.n_scans, most)
 
     def _fetch(self, wait: bool = False) -> bool:
         news = self.finder.news(wait=wait)
@@ -172,7 +181,7 @@ class DriveState:
         looked_at = -1
         while looked_at != len(self.grid):  # what the shapes rule out is given up, and leaves another map
             looked_at = len(self.grid)
-            self.finder.forget()
+            self._map_anew(self.grid)
             self._begin_look(most=looked_at)
             self._fetch(wait=True)
 
@@ -187,7 +196,7 @@ class DriveState:
         self.n_scans += 1
         self.seen_map.add(self.scan, self.lidar.range_min, self.lidar.range_max)
         before = self._cells
-        self.grid.add(self.scan)
+        self._mapper.add(self.scan)
         self._cells = now = self.grid.cells
         new, gone = _only_in(now, before), _only_in(before, now)
         self._n_news += len(new) + len(gone)
