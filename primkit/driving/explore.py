@@ -32,7 +32,7 @@ from ..table import count
 from ..world import World
 from .mapper import Mapper
 from .next_views import View, next_view, shown_from
-from .seen_map import EXPLAINED, SQUARE, SeenMap, open_outlines
+from .seen_map import EXPLAINED, SQUARE, SeenMap, open_outlines, outlines_in
 from .ways import Ways, forward, ways_from, wheels_along
 
 Why = Literal["all is seen", "the rest cannot be seen", "out of scans"]
@@ -140,7 +140,7 @@ class _Tour:
         self.board, self.mapper = SeenMap(world.size), Mapper(rng=find_rng)
         self.vain = np.zeros(self.board.free.shape, dtype=np.int64)  # how often each square was looked at in vain
         self.been = np.zeros(self.vain.shape, dtype=bool)  # squares that were scanned from
-        self.found = Found()
+        self.found, self.outlines = Found(), outlines_in(Found())
         self.found_from = 0  # points that this was made of
         self.inside = self.explained = np.zeros(self.vain.shape, dtype=bool)
 
@@ -176,14 +176,15 @@ class _Tour:
         if len(self.mapper.grid) == self.found_from:
             return False
         self.found, self.found_from = self.mapper.found, len(self.mapper.grid)
-        shapes = [one.shape for one in self.found]
-        self.inside, self.explained = self.board.covered(shapes, 0.0), self.board.covered(shapes, EXPLAINED)
+        self.outlines = outlines_in(self.found)
+        self.inside = self.board.covered(self.outlines, 0.0)
+        self.explained = self.board.covered(self.outlines, EXPLAINED)
         return True
 
     def worth(self, *, give_up: bool = True) -> Floats:
         """Return what each square is worth to be seen, shape (N, N)."""
         open_ = np.zeros(self.vain.shape, dtype=bool)
-        open_[self.board.index(open_outlines(self.found))] = True
+        open_[self.board.index(open_outlines(self.outlines))] = True
         worth = 1.0 * self.board.hiding_places(self.explained) + OUTLINE_WORTH * open_
         return worth * (self.vain < MOST_LOOKS) if give_up else worth
 

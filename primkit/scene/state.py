@@ -33,7 +33,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..arguments import Ints, check_type
 from ..driving.mapper import Mapper
 from ..driving.moving_grid import MovingGrid
-from ..driving.seen_map import EXPLAINED, SeenMap
+from ..driving.seen_map import EXPLAINED, SeenMap, outlines_in
 from ..evaluation import evaluate
 from ..formats import DriveJournal, record_drive
 from ..found import Found
@@ -235,7 +235,7 @@ class DriveState:
 
     def unseen(self) -> NDArray[np.bool_]:
         """Return which squares of a centimetre may still hide a shape, shape (N, N), as ``SeenMap`` numbers them."""
-        explained = self.seen_map.covered([one.shape for one in self.found], EXPLAINED)
+        explained = self.seen_map.covered(outlines_in(self.found), EXPLAINED)
         return self.seen_map.hiding_places(explained)
 
     def compare(self) -> Table:
