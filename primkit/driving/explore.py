@@ -28,9 +28,10 @@ from ..found import Found
 from ..lidar import Lidar, Scans, as_lidar, scan
 from ..robot import BODY, PERIOD, advance, start_pose
 from ..show import thumbnail
+from ..steps import Steps
 from ..table import count
 from ..world import World
-from .mapper import Mapper
+from .mapper import Mapper, unmended
 from .next_views import View, next_view, shown_from
 from .seen_map import EXPLAINED, SQUARE, SeenMap, open_outlines, outlines_in
 from .ways import Ways, forward, ways_from, wheels_along
@@ -92,6 +93,7 @@ def explore(
     lidar: Lidar | None = None,
     *,
     start: ArrayLike | None = None,
+    steps: Steps | None = None,
     rng: int | np.random.Generator | None = None,
     most_scans: int = MOST_SCANS,
 ) -> Exploration:
@@ -107,6 +109,8 @@ def explore(
     lidar : Lidar, default Lidar()
     start : array_like, shape (3,), optional
         As for ``drive``.
+    steps : Steps, optional
+        Functions of your own: what they find, the robot goes to look at. A segmentation of your own is not mended.
     rng : seed or numpy.random.Generator, optional
         The same seed gives the same exploration, to the last bit.
     most_scans : int, after which it stops
@@ -120,7 +124,7 @@ def explore(
     lidar = as_lidar(lidar)
     most_scans = as_count(most_scans, "most_scans")
     pose = advance(world, start_pose(world) if start is None else start, (0, 0), 0)[0]  # refused unless it is clear
-    tour = _Tour(world, lidar, pose, as_rng(rng))
+    tour = _Tour(world, lidar, pose, steps, as_rng(rng))
     why: Why | None = None
     while why is None:
         tour.look()
@@ -131,13 +135,14 @@ def explore(
 class _Tour:
     """A robot on its way: what it knows, and what it did so far."""
 
-    def __init__(self, world: World, lidar: Lidar, pose: Floats, rng: np.random.Generator) -> None:
+    def __init__(self, world: World, lidar: Lidar, pose: Floats, steps: Steps | None, rng: np.random.Generator) -> None:
         self.world, self.lidar = world, lidar
         self.path: list[Floats] = [pose]
         self.wheels: list[Floats] = []
         self.scans: list[Scans] = []
         self.scan_rng, find_rng = rng.spawn(2)
-        self.board, self.mapper = SeenMap(world.size), Mapper(rng=find_rng)
+        self.board = SeenMap(world.size)
+        self.mapper = Mapper(settings=unmended(steps), steps=steps, rng=find_rng)
         self.vain = np.zeros(self.board.free.shape, dtype=np.int64)  # how often each square was looked at in vain
         self.been = np.zeros(self.vain.shape, dtype=bool)  # squares that were scanned from
         self.found, self.outlines = Found(), outlines_in(Found())

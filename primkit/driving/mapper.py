@@ -20,6 +20,7 @@ has a few points more is fitted anew from what it was. To about a tenth of a mil
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -35,6 +36,15 @@ from ..show import thumbnail
 from ..steps import Steps
 from ..table import count
 from .moving_grid import MovingGrid
+
+
+def unmended(steps: Steps | None) -> Settings:
+    """Return the settings that show what steps do: a segmentation of one's own gets no second opinion that mends it.
+
+    >>> unmended(None), unmended(Steps(segment=lambda points, n_shapes: points[:, 0] > 0))
+    (ROBUST, Settings(second_opinion=False))
+    """
+    return replace(ROBUST, second_opinion=steps is None or steps.segment is None)
 
 
 class Mapper:

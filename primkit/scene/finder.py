@@ -13,16 +13,17 @@ Out: ``Look``: the shapes of the last look that is done, and how many scans it k
 (['circle'], 7, None)
 
 There is one look at a time; another that is asked for meanwhile is not begun, and the next takes the points that are
-newest then. ``beside()`` looks in a thread of its own; ``AtOnce()`` in the caller's, so that the same drive gives the
-same shapes on any computer. ``thin_out`` bounds the cells of a look, and so its time and memory.
+newest then. ``Beside()`` looks in a thread that ends with the look; ``AtOnce()`` in the caller's, so that the same
+drive gives the same shapes on any computer. ``thin_out`` bounds the cells of a look, and so its time and memory.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import Executor, Future
 from copy import copy
 from dataclasses import dataclass
+from threading import Thread
 from typing import ParamSpec, TypeVar
 
 import numpy as np
@@ -31,6 +32,7 @@ from ..arguments import Bools, Ints
 from ..driving.mapper import Mapper
 from ..found import Found
 from ..grid import Grid
+from .page import Message, describe
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -46,29 +48,49 @@ class AtOnce(Executor):
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
         """Do it, and return what came of it."""
         done: Future[T] = Future()
-        try:
-            done.set_result(fn(*args, **kwargs))
-        except Exception as error:  # it is for who asks for the result, as with any executor
-            done.set_exception(error)
+        _do(done, fn, *args, **kwargs)
         return done
 
 
-def beside() -> Executor:
-    """Return an executor with a thread of its own, one thing after the other; without threads, one that does it now."""
-    executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix="primkit-finder")
+class Beside(Executor):
+    """An executor with a thread for each thing to do, and none when there is nothing; without threads, it does it now.
+
+    What never ends keeps nobody from leaving: its thread ends with the program.
+    """
+
+    threads = True  # until it turns out that there are none
+
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        """Begin it, and return what will come of it."""
+        done: Future[T] = Future()
+        try:
+            Thread(target=_do, args=(done, fn, *args), kwargs=kwargs, name="primkit-finder", daemon=True).start()
+        except RuntimeError:  # a browser's Python cannot start one
+            self.threads = False
+            _do(done, fn, *args, **kwargs)
+        return done
+
+
+def _do(done: Future[T], fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> None:
+    """Do it, and tell the future what came of it."""
     try:
-        executor.submit(int)
-    except RuntimeError:  # a browser's Python cannot start one
-        return AtOnce()
-    return executor
+        done.set_result(fn(*args, **kwargs))
+    except Exception as error:  # it is for who asks for the result, as with any executor
+        done.set_exception(error)
 
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """The shapes that were found, from left to right, and how many scans the points were made of."""
+    """The shapes that were found, from left to right; how many scans the points were made of; and how all is drawn."""
 
     found: Found
     n_scans: int
+    drawn: Message
+
+    @classmethod
+    def at(cls, found: Found, n_scans: int) -> Look:
+        """Return the look; what it takes to draw it is worked out here, where the robot does not wait for it."""
+        return cls(found, n_scans, describe(found))
 
 
 def thin_out(cells: Ints, most: int = MOST_CELLS) -> Bools:
@@ -97,7 +119,7 @@ class Finder:
     Parameters
     ----------
     executor : Executor
-        Who does the work: ``AtOnce()``, ``beside()``, or any other of ``concurrent.futures`` within this process.
+        Who does the work: ``AtOnce()``, ``Beside()``, or any other of ``concurrent.futures`` within this process.
     """
 
     def __init__(self, executor: Executor) -> None:
@@ -113,6 +135,11 @@ class Finder:
         """Whether a look is under way, or its shapes have not been fetched yet."""
         return self._under_way is not None
 
+    @property
+    def in_the_way(self) -> bool:
+        """Whether looks make the robot wait, because there are no threads to do them beside the drive."""
+        return isinstance(self._executor, Beside) and not self._executor.threads
+
     def look(self, mapper: Mapper, n_scans: int, most: int = MOST_CELLS) -> None:
         """Begin to look at a map as it is now, or at so many of its cells; while another look lasts, do nothing."""
         if self._under_way is None:
@@ -120,7 +147,7 @@ class Finder:
             if len(grid) > most:
                 grid = Grid(grid.resolution)
                 grid.add(mapper.grid.points()[thin_out(mapper.grid.cells, most)])
-            self._under_way = self._executor.submit(lambda: Look(mapper.look(grid), n_scans))
+            self._under_way = self._executor.submit(lambda: Look.at(mapper.look(grid), n_scans))
 
     def news(self, *, wait: bool = False) -> Look | None:
         """Return the look that was begun, once it is done (``wait`` for that), and once only; None without news.
@@ -136,12 +163,11 @@ class Finder:
         self._under_way = None
         return look.result()
 
+    def submit(self, work: Callable[[], T]) -> Future[T]:
+        """Have other work done beside the drive."""
+        return self._executor.submit(work)
+
     def close(self) -> None:
-        """Let the executor go, without waiting; looks that are asked for later are done at once."""
-        self._executor.shutdown(wait=False, cancel_futures=True)
+        """Drop a look that is under way; those that are asked for later are done at once."""
         self._executor = AtOnce()
         self.forget()
-
-    def submit(self, work: Callable[[], T]) -> Future[T]:
-        """Have other work done beside the drive, between two looks."""
-        return self._executor.submit(work)

@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arguments import Ints, check_type
-from ..driving.mapper import Mapper
+from ..driving.mapper import Mapper, unmended
 from ..driving.moving_grid import MovingGrid
 from ..driving.seen_map import EXPLAINED, SeenMap, outlines_in
 from ..evaluation import evaluate
@@ -40,11 +40,13 @@ from ..found import Found
 from ..grid import Grid
 from ..lidar import Lidar, Scans, as_lidar, scan
 from ..robot import advance, start_pose
+from ..steps import Steps
 from ..table import Table
 from ..world import World
-from .finder import MOST_CELLS, AtOnce, Finder
+from .finder import MOST_CELLS, AtOnce, Finder, Look
 from .keys import STANDING_WHEELS
 from .moved_shape import find_left_within, move_one_shape
+from .own_steps import OwnSteps
 from .runs import Run, automatic_runs, compare_runs
 
 NEWS_SHARE = 0.01  # when this share of the cells has come or gone since the last look, it is time for another
@@ -71,10 +73,10 @@ class DriveState:
 
     Parameters
     ----------
-    world, lidar, journal, moving, rng
+    world, lidar, journal, moving, steps, rng
         As for ``drive_scene``. The journal is made with the first step, and another one after ``undo``.
     executor : Executor, optional
-        Who looks for shapes: ``AtOnce()`` by default, ``beside()`` in a thread of its own.
+        Who looks for shapes: ``AtOnce()`` by default, ``Beside()`` in a thread of its own.
     """
 
     def __init__(
@@ -84,12 +86,15 @@ class DriveState:
         *,
         journal: str | Path | None = None,
         moving: bool = False,
+        steps: Steps | None = None,
         rng: int = 0,
         executor: Executor | None = None,
     ) -> None:
         check_type(world, World, "world must be a World, as in drive_scene(world)")
         self.lidar, self.seed, self.moving = as_lidar(lidar), rng, moving
         check_type(moving, bool, "moving must be True or False")
+        self.steps = steps
+        self.own = OwnSteps(Steps() if steps is None else steps)
         check_type(rng, int, "rng must be a seed, a whole number")
         self.journal = None if journal is None else Path(journal)
         if self.journal is not None and self.journal.suffix != ".jsonl":
@@ -98,7 +103,8 @@ class DriveState:
         self._written: DriveJournal | None = None
         self.finder = Finder(AtOnce() if executor is None else executor)
         self.undo()
-        self.finish()
+        if steps is None:
+            self.finish()
 
     def undo(self) -> None:
         """Go back to the start and forget all that was seen; what was written to a journal stays."""
@@ -107,24 +113,35 @@ class DriveState:
         self.world, self.pose, self.n_scans, self.stopped = self._start_world, start_pose(self._start_world), 0, False
         self._map_anew(MovingGrid(lidar=self.lidar) if self.moving else Grid())
         self._cells = self.grid.cells  # as they were told last
-        self.found = Found()
-        self.n_scans_found = 0  # how many scans the shapes were found in
+        self.last = Look.at(Found(), 0)  # the last look that was done
+        self._scored = (self.last, self.world, 0.0)
         self.seen_map = SeenMap(self.world.size)
         self._rng, self._hand = np.random.default_rng(self.seed), np.random.default_rng([self.seed, 1])
         self._n_news = 0  # cells that have come or gone since the last look began
         self._rests = True  # stands, or sees nothing new
         self._scan()
-        self.map()
+        if self.steps is None:  # somebody's own may be slow, or wrong: first there is something to drive
+            self.map()
 
     def _map_anew(self, grid: Grid | MovingGrid) -> None:
         """Go on with a grid, and forget all fits so far."""
         self.finder.forget()
-        self._mapper = Mapper(grid=grid, rng=self.seed)
+        self._mapper = Mapper(grid=grid, settings=unmended(self.steps), steps=self.own.steps, rng=self.seed)
 
     @property
     def grid(self) -> Grid | MovingGrid:
         """All cells that were hit; where things may move, those that still stand."""
         return self._mapper.grid
+
+    @property
+    def found(self) -> Found:
+        """The shapes found so far, and what else the points are."""
+        return self.last.found
+
+    @property
+    def n_scans_found(self) -> int:
+        """How many scans the shapes were found in."""
+        return self.last.n_scans
 
     def step(self, wheels: ArrayLike = STANDING_WHEELS) -> Step:
         """Turn the wheels for a period, scan, and map: ``move`` and ``map`` together.
@@ -163,12 +180,14 @@ class DriveState:
     def _begin_look(self, most: int = MOST_CELLS) -> None:
         """Have the map looked at, or so many of its cells."""
         self._n_news = 0
+        if not self.finder.busy:
+            self.own.begin()
         self.finder.look(self._mapper, self.n_scans, most)
 
     def _fetch(self, wait: bool = False) -> bool:
         news = self.finder.news(wait=wait)
         if news is not None:
-            self.found, self.n_scans_found = news.found, news.n_scans
+            self.last = news
             if isinstance(self.grid, MovingGrid):
                 self.grid.give_up(find_left_within(self.grid, self.found))  # the next scan tells what is gone
         return news is not None
@@ -231,7 +250,9 @@ class DriveState:
     @property
     def score(self) -> float:
         """Weighted accuracy of what was found so far, 0 to 1."""
-        return evaluate(self.found, self.world).weighted_accuracy
+        if self._scored[:2] != (self.last, self.world):  # each is compared with itself: looks have no other equality
+            self._scored = (self.last, self.world, evaluate(self.found, self.world).weighted_accuracy)
+        return self._scored[2]
 
     def unseen(self) -> NDArray[np.bool_]:
         """Return which squares of a centimetre may still hide a shape, shape (N, N), as ``SeenMap`` numbers them."""
@@ -241,7 +262,7 @@ class DriveState:
     def compare(self) -> Table:
         """Return this drive beside the way-points and ``explore`` on the same board, which takes some seconds."""
         self.finish()
-        return compare_runs((self.by_hand(), *automatic_runs(self.world, self.lidar, self.seed)))
+        return compare_runs((self.by_hand(), *automatic_runs(self.world, self.lidar, self.seed, self.steps)))
 
     def by_hand(self) -> Run:
         """Return what came of this drive so far."""
