@@ -26,7 +26,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arguments import as_count, as_rng, check_type, short
+from ..arguments import Ints, as_count, as_rng, check_type, short
 from ..found import Found
 from ..grid import Grid
 from ..lidar import Scans
@@ -106,7 +106,7 @@ class Mapper:
         self._find: Callable[..., Found] = partial(find_again, settings=settings, steps=steps, kinds=kinds, rng=seed)
         self._warm: WarmStarts = {}
         self._found = self._find([], self._warm)  # refuses what find_shapes refuses, before anything is driven
-        self._found_in = Grid().cells
+        self._found_in = _told_by(Grid())
 
     def add(self, seen: Scans | ArrayLike) -> None:
         """Add scans to the grid, as ``grid.add`` does; nothing is looked for yet.
@@ -118,9 +118,9 @@ class Mapper:
     @property
     def found(self) -> Found:
         """The shapes in the grid; looked for anew when it has changed."""
-        cells = self.grid.cells
-        if not np.array_equal(cells, self._found_in):
-            self._found, self._found_in = self.look(self.grid), cells
+        told = _told_by(self.grid)
+        if not np.array_equal(told, self._found_in):
+            self._found, self._found_in = self.look(self.grid), told
         return self._found
 
     def look(self, grid: Grid | MovingGrid) -> Found:
@@ -134,3 +134,8 @@ class Mapper:
 
     def _repr_html_(self) -> str:
         return thumbnail(repr(self), dots=self.grid.points())
+
+
+def _told_by(grid: Grid | MovingGrid) -> Ints:
+    """Return all that shapes are made of: each cell, and the scan that saw it last, shape (N, 3)."""
+    return np.column_stack([grid.cells, grid.last_seen])
