@@ -23,6 +23,7 @@ from .pipeline import find_shapes as find_shapes, Settings as Settings, PAPER as
 from .evaluation import evaluate as evaluate, match as match
 from .report import Report as Report
 
+from .driving.mapper import Mapper as Mapper
 from .driving import explore as explore, Exploration as Exploration
 from .driving.scripted import scripted_route as scripted_route
 from .formats import load_world as load_world, save_world as save_world

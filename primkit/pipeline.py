@@ -38,9 +38,8 @@ from .shapes import KINDS, Kind
 from .steps import Steps
 from .table import Table
 
-Memory = dict[
-    tuple[bytes, float, int, bool, bool, tuple[str, ...]], Group
-]  # groups as they were measured last, by their points
+# Groups as they were measured last, by their points: the warm starts of the next look at a map that grows.
+WarmStarts = dict[tuple[bytes, float, int, bool, bool, tuple[str, ...]], Group]
 
 SAME_SPREAD = 1.25  # fits are done anew when the spread comes out farther than this from what was supposed
 CONTRADICTED = 1.5  # neighbours scatter less than their noise lets them, if anything
@@ -118,10 +117,9 @@ def find_shapes(
     settings: Settings = ROBUST,
     steps: Steps | None = None,
     kinds: Sequence[Kind] | None = None,
-    memory: Memory | None = None,
     rng: int | np.random.Generator | None = None,
 ) -> Found:
-    """Find the shapes whose outlines the points lie on.
+    """Find the shapes whose outlines the points lie on; for a map that grows, see ``Mapper``.
 
     Parameters
     ----------
@@ -140,11 +138,6 @@ def find_shapes(
     kinds : sequence of str
         What can be there, if that is known beforehand: some of ``"circle"``, ``"triangle"``, ``"rectangle"``,
         ``"pentagon"`` and ``"polygon"``. ``PAPER`` has no use for it.
-    memory : dict, optional
-        For mapping while driving: hand in the same dictionary, empty at first, with every call, and the same
-        seed as ``rng``. Groups whose points have not changed since the last call are not measured again, and those
-        that have a few points more are fitted anew from what they were: the result is the same as without it to
-        about a tenth of a millimetre. ``PAPER`` has no use for it.
     rng : int or numpy.random.Generator, optional
         Seed or generator: the same seed gives the same shapes, to the last bit, for points in any order.
 
@@ -164,6 +157,25 @@ def find_shapes(
     --------
     >>> find_shapes([])
     no shapes found
+    """
+    return find_again(points, {}, n_shapes, resolution=resolution, settings=settings, steps=steps, kinds=kinds, rng=rng)
+
+
+def find_again(
+    points: Grid | ArrayLike,
+    warm: WarmStarts,
+    n_shapes: int | None = None,
+    *,
+    resolution: float | None = None,
+    settings: Settings = ROBUST,
+    steps: Steps | None = None,
+    kinds: Sequence[Kind] | None = None,
+    rng: int | np.random.Generator | None = None,
+) -> Found:
+    """Find shapes as ``find_shapes`` does, from the warm starts of the last call, which become those of the next.
+
+    Groups whose points have not changed since are not measured again, and those that have a few points more are fitted
+    anew from what they were: to about a tenth of a millimetre the result is the same. ``rng`` must be the same seed.
     """
     check_type(settings, Settings, "settings must be ROBUST, PAPER or Settings of your own")
     steps = Steps() if steps is None else steps
@@ -192,9 +204,8 @@ def find_shapes(
     if settings.method == "published":
         found += _as_published(together, settings, steps, measure_rng)
     else:
-        memory = {} if memory is None else memory
         together = [points for points in together if not account.by_chance(points)]  # strays, not to be explained
-        groups, margins = _jointly(together, n_shapes, settings, kinds, memory, measure_rng)
+        groups, margins = _jointly(together, n_shapes, settings, kinds, warm, measure_rng)
         for group, margin in zip(groups, margins, strict=True):
             for thing in things_of(group.choice, margin, account):
                 if isinstance(thing, Detection):
@@ -239,35 +250,35 @@ def _jointly(
     n_shapes: int | None,
     settings: Settings,
     kinds: tuple[Kind, ...],
-    memory: Memory,
+    warm: WarmStarts,
     rng: np.random.Generator,
 ) -> tuple[list[Group], list[float]]:
     """Explain each group, and ask for a second opinion on the groups: the default way."""
     seed = int(rng.integers(2**63))
     how = (seed, settings.soft, settings.thorough, kinds)
-    used: Memory = {}
+    used: WarmStarts = {}
 
     def explain(points: Floats, spread: float) -> Group:
         key = (points.tobytes(), spread, *how)
         if key not in used:
-            used[key] = memory[key] if key in memory else remembered(points, spread)
+            used[key] = warm[key] if key in warm else refitted(points, spread)
         return used[key]
 
-    def remembered(points: Floats, spread: float) -> Group:
-        alike = (old for (_, *before), old in memory.items() if before == [spread, *how])
+    def refitted(points: Floats, spread: float) -> Group:
+        alike = (old for (_, *before), old in warm.items() if before == [spread, *how])
         again = (grown(old, points, spread, soft=settings.soft) for old in alike)
         group = next((group for group in again if group is not None), None)
         if group is not None:
             return group
         return explained(points, spread, seed, soft=settings.soft, thorough=settings.thorough, kinds=kinds)
 
-    last = next((group.spread for group in reversed(memory.values())), None)  # as the last fits left it
+    last = next((group.spread for group in reversed(warm.values())), None)  # as the last fits left it
     groups, spread = _explain_all(together, settings, last, explain)
     margins = [float("nan")] * len(groups)
     if settings.second_opinion or n_shapes is not None:
         groups, margins = regrouped(groups, spread, n_shapes, explain=partial(explain, spread=spread))
-    memory.clear()  # what was not used now will not come again: a map only grows
-    memory.update(used)
+    warm.clear()  # what was not used now will not come again: a map only grows
+    warm.update(used)
     return groups, margins
 
 

@@ -198,74 +198,6 @@ def test_each_remedy_can_be_switched_on_alone():
     assert pk.evaluate(pk.find_shapes(points, 2, settings=linked, rng=0), world).weighted_accuracy == 1.0
 
 
-def nearly_the_same(a, b, tolerance=0.0001):
-    """The same shapes, within a tenth of a millimetre."""
-    return [d.kind for d in a] == [d.kind for d in b] and all(
-        np.abs(np.subtract(one.shape.dimensions, other.shape.dimensions)).max() <= tolerance
-        and np.abs(one.shape.centroid - other.shape.centroid).max() <= tolerance
-        for one, other in zip(a, b, strict=True)
-        if all(one.measured) and all(other.measured)
-    )
-
-
-@pytest.mark.parametrize("noise_std", [0.0, 0.002])
-def test_a_memory_changes_nothing_but_the_work(monkeypatch, noise_std):
-    """While driving, each scan changes one or two groups: few of these are measured from scratch."""
-    import primkit.pipeline as pipeline
-
-    measured = []
-    real = pipeline.explained
-    monkeypatch.setattr(pipeline, "explained", lambda points, *a, **k: measured.append(1) or real(points, *a, **k))
-    world = pk.random_world(4, rng=8)
-    scans = pk.scan(world, pk.teleport_poses(world), pk.Lidar(noise_std=noise_std), rng=0)
-    settings = replace(pk.ROBUST, noise_std=noise_std)  # else the spread is taken over from the call before
-    grid, memory, with_it, without = pk.Grid(), {}, 0, 0
-    grid.add(scans[:40])
-    for number in range(40, len(scans), 2):
-        grid.add(scans[number : number + 2])
-        points = grid.points()
-        measured.clear()
-        fresh = pk.find_shapes(points, settings=settings, rng=0)
-        without += len(measured)
-        measured.clear()
-        remembered = pk.find_shapes(points, settings=settings, memory=memory, rng=0)
-        with_it += len(measured)
-        assert nearly_the_same(fresh, remembered)
-    assert with_it < without / 2
-    measured.clear()
-    again = pk.find_shapes(points, settings=settings, memory=memory, rng=0)
-    assert measured == []
-    assert same(again, remembered)
-    assert len(memory) < 30
-
-
-def test_a_memory_sees_when_a_few_points_make_it_another_shape():
-    """Three sides of a rectangle are seen first; what is on the fourth is not fitted to what was believed before."""
-    square = pk.Polygon([(-0.06, -0.05), (0.06, -0.05), (0.06, 0.05), (-0.06, 0.05)])
-    outline, memory = square.outline(400), {}
-    order = outline[np.argsort(outline[:, 1], kind="stable")]
-    for n in range(150, 401, 10):
-        found = pk.find_shapes(order[:n], memory=memory, rng=0)
-    assert nearly_the_same(found, pk.find_shapes(order, rng=0))
-    assert [d.kind for d in found] == ["rectangle"]
-    assert np.abs(np.subtract(found[0].shape.dimensions, (0.12, 0.1))).max() < 0.0005
-
-
-def test_a_memory_keeps_the_spread_until_the_fits_say_otherwise():
-    """The estimate from neighbours is low under noise: a second call does not start from it again."""
-    import primkit.pipeline as pipeline
-
-    points, memory = points_of(pk.random_world(4, rng=8), noise_std=0.008), {}
-    first = pk.find_shapes(points, memory=memory, rng=0)
-    assert len({group.spread for group in memory.values()}) == 2
-    again = pk.find_shapes(points, memory=memory, rng=0)
-    assert len({group.spread for group in memory.values()}) == 1
-    assert nearly_the_same(first, again)
-    quiet = points_of(pk.random_world(4, rng=8))
-    assert nearly_the_same(pk.find_shapes(quiet, memory=memory, rng=0), pk.find_shapes(quiet, rng=0))
-    assert max(group.spread for group in list(memory.values())[-1:]) < pipeline.spread_across(0.001)
-
-
 def test_much_noise_is_found_from_the_fits():
     """Neighbours alone underestimate 10 mm by a third; the fits to the groups mend it."""
     world = pk.random_world(4, kinds=["circle", "rectangle", "rectangle", "triangle"], rng=3)
@@ -276,13 +208,6 @@ def test_much_noise_is_found_from_the_fits():
     _, spread = _explain_all(together, pk.ROBUST, None, explained)
     assert spread_of(points) < 0.8 * true
     assert spread == pytest.approx(true, rel=0.15)
-
-
-def test_a_memory_does_not_mix_settings():
-    points, memory = points_of(pk.random_world(3, rng=9), noise_std=0.004), {}
-    for settings in (pk.ROBUST, replace(pk.ROBUST, soft=False), pk.ROBUST):
-        fresh = pk.find_shapes(points, settings=settings, rng=0)
-        assert same(fresh, pk.find_shapes(points, settings=settings, memory=memory, rng=0))
 
 
 def test_many_equal_points_and_a_few_others():

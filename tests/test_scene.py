@@ -2,6 +2,7 @@
 
 import sys
 import threading
+import time
 from concurrent.futures import Executor, Future
 
 import numpy as np
@@ -9,13 +10,14 @@ import pytest
 
 import primkit as pk
 from primkit.driving.moving_grid import MovingGrid
-from primkit.measure import Detection
+from primkit.found import Found
+from primkit.measure import Detection, Other, Wall
 from primkit.robot import AXLE, FASTEST, WHEEL, clearance
 from primkit.robust.deviations import Certainty
-from primkit.scene.finder import MOST_CELLS, Finder, beside, thin_out
+from primkit.scene.finder import MOST_CELLS, Beside, Finder, thin_out
 from primkit.scene.keys import KEY_MOTIONS, STANDING_WHEELS, wheels_for
 from primkit.scene.moved_shape import LEAST_MOVED, find_left_within, move_one_shape
-from primkit.scene.page import describe
+from primkit.scene.page import describe, describe_shape
 from primkit.scene.replay import Film
 from primkit.scene.scene import Scene
 from primkit.scene.state import DriveState
@@ -152,7 +154,7 @@ def test_the_automatic_movements_are_the_library_s(world):
         explored.robot_time,
         len(explored.found),
     )
-    assert tour.score == pk.evaluate(list(explored.found), world).weighted_accuracy
+    assert tour.score == pk.evaluate(explored.found, world).weighted_accuracy
     assert (hand.n_scans, hand.robot_time, hand.score) == (2, pytest.approx(0.1), state.score)
 
 
@@ -211,9 +213,10 @@ def test_the_robot_does_not_wait_for_the_shapes(world):
 
 
 def test_one_look_at_a_time():
-    finder, points = Finder(later := Later()), pk.Circle((0.1, 0.0), 0.06).outline(150)
+    finder, mapper = Finder(later := Later()), pk.Mapper(rng=0)
     for n_scans in (3, 4):
-        finder.look(points[: 40 * n_scans], n_scans)
+        mapper.add(pk.Circle((0.1, 0.0), 0.06).outline(150)[: 40 * n_scans])
+        finder.look(mapper, n_scans)
         assert finder.busy
         assert finder.news() is None
     later.work_one()
@@ -225,16 +228,16 @@ def test_one_look_at_a_time():
 def test_of_very_many_cells_a_look_takes_a_part_and_the_last_look_all(world, monkeypatch):
     """So that neither its time nor its memory grows with the drive."""
     looked_at = []
-    monkeypatch.setattr("primkit.scene.finder.find_shapes", lambda points, **_: looked_at.append(points) or [])
+    monkeypatch.setattr(pk.Mapper, "look", lambda _, grid: looked_at.append(len(grid)) or pk.find_shapes([]))
     state, rng = DriveState(world), np.random.default_rng(0)
     for _ in range(8):
         state.grid.add(rng.uniform(-0.4, 0.4, (2000, 2)))
         state.step()
     assert len(state.grid) > 2 * MOST_CELLS
-    assert max(map(len, looked_at)) <= MOST_CELLS
-    assert len(looked_at[-1]) > MOST_CELLS / 2
+    assert max(looked_at) <= MOST_CELLS
+    assert looked_at[-1] > MOST_CELLS / 2
     state.finish()
-    assert len(looked_at[-1]) == len(state.grid)
+    assert looked_at[-1] == len(state.grid)
 
 
 def test_what_is_looked_at_grows_with_the_map():
@@ -278,7 +281,7 @@ def test_a_look_at_what_was_undone_comes_to_nothing(world):
 
 
 def test_a_thread_finds_what_the_drive_itself_finds(world):
-    own, threaded = DriveState(world), DriveState(world, executor=beside())
+    own, threaded = DriveState(world), DriveState(world, executor=Beside())
     for state in (own, threaded):
         ahead(state, 30)
         state.finish()
@@ -286,14 +289,20 @@ def test_a_thread_finds_what_the_drive_itself_finds(world):
     assert [one.kind for one in threaded.found] == [one.kind for one in own.found]
 
 
-def test_the_thread_ends_with_the_scene(world):
+def finders():
+    """The threads that look for shapes."""
+    return [thread for thread in threading.enumerate() if thread.name == "primkit-finder"]
+
+
+def test_a_thread_ends_with_its_look(world):
     scene = pk.drive_scene(world)
-    names = [thread for thread in threading.enumerate() if thread.name.startswith("primkit-finder")]
-    scene.close()
-    for thread in names:
+    scene.answer({"do": "step", "held": ["forward"]})
+    assert len(finders()) <= 1
+    scene.state.finish()
+    for thread in finders():
         thread.join(10)
-    assert names
-    assert not any(thread.is_alive() for thread in names)
+    assert finders() == []
+    scene.close()
     ahead(scene.state, 3)
     scene.state.finish()
     assert scene.state.n_scans_found == scene.state.n_scans, "the state is still of use"
@@ -303,10 +312,10 @@ def test_who_drives_hears_of_a_look_that_failed_and_drives_on(scene, monkeypatch
     def broken(*_args, **_kwargs):
         raise ArithmeticError("lost count")
 
-    monkeypatch.setattr("primkit.scene.finder.find_shapes", broken)
+    monkeypatch.setattr(pk.Mapper, "look", broken)
     for _ in range(3):
         scene.answer({"do": "step", "held": ["forward"]})
-    assert any("failed, the drive goes on: ArithmeticError: lost count" in (m.get("say") or "") for m, _ in scene.sent)
+    assert scene.sent[-1][0]["trouble"] == "ArithmeticError: lost count; the drive goes on."
     assert scene.state.n_scans == 4
     with pytest.raises(ArithmeticError, match="lost count"):
         ahead(scene.state, 3)
@@ -321,7 +330,7 @@ def test_the_page_asks_on_until_the_last_look_is_done(world):
     scene.send = lambda content, _=None: scene.sent.append(content)
     for _ in range(9):
         scene.answer({"do": "step", "held": ["forward"]})
-    assert "shapes 9 scans old" in scene.sent[-2]["score"]
+    assert "shapes 0.9 s old" in scene.sent[-2]["score"]
     while later.work:
         assert scene.sent[-1]["busy"]
         later.work_one()
@@ -677,13 +686,16 @@ def test_the_automatic_runs_are_shown_beside_the_drive(scene):
     assert scene.sent[-2][0]["automatic"] is None
 
 
+def outlined(x, y):
+    """Points a millimetre apart along the lower side and the right one of a rectangle of 200 x 100 mm."""
+    return np.vstack([np.column_stack([x, 0 * x]), np.column_stack([0 * y + 0.2, y])])
+
+
 def test_an_outline_is_drawn_as_it_was_seen():
     """Of a rectangle only two sides were seen; together the stretches are the whole outline."""
     shape = pk.Polygon([(0, 0), (0.2, 0), (0.2, 0.1), (0, 0.1)])
-    x, y = np.arange(0, 0.2, 0.001), np.arange(0, 0.1, 0.001)
-    points = np.vstack([np.column_stack([x, 0 * x]), np.column_stack([0 * y + 0.2, y])])
-    told = describe(Detection(shape, points, 0.0, sure=Certainty((), (0.001, float("inf")))))
-    assert told["name"] == "rectangle, 200 x ? mm"
+    points = outlined(np.arange(0, 0.2, 0.001), np.arange(0, 0.1, 0.001))
+    told = describe_shape(Detection(shape, points, 0.0, sure=Certainty((), (0.001, float("inf")))))
     for seen, stretch in told["stretches"]:
         inner = np.array(stretch[2:-2]).reshape(-1, 2) / 10_000
         on = (np.abs(inner[:, 1]) < 0.013) | (np.abs(inner[:, 0] - 0.2) < 0.013)
@@ -691,3 +703,200 @@ def test_an_outline_is_drawn_as_it_was_seen():
     ends = [stretch for _, stretch in told["stretches"]]
     assert all(a[-1] == b[0] for a, b in zip(ends, [*ends[1:], ends[0]], strict=True))
     assert {seen for seen, _ in told["stretches"]} == {True, False}
+
+
+@pytest.mark.parametrize(
+    ("certain", "sure", "name"),
+    [
+        (True, (0.001, 0.001), "rectangle, 200 x 100 mm"),
+        (True, (0.001, float("inf")), "rectangle, 200 x ? mm"),
+        (True, (), "rectangle, 200 x 100 mm"),
+        (False, (0.001, 0.001), "not certain"),
+    ],
+    ids=["seen", "one side unmeasured", "measured by one's own fit", "not certain"],
+)
+def test_only_what_is_certain_has_a_name(certain, sure, name, monkeypatch):
+    monkeypatch.setattr(Detection, "certain", certain)
+    shape = pk.Polygon([(0, 0), (0.2, 0), (0.2, 0.1), (0, 0.1)])
+    told = describe_shape(Detection(shape, shape.outline(200), 0.0, sure=Certainty((), sure)))
+    assert (told["certain"], told["name"]) == (certain, name)
+
+
+def test_what_is_no_shape_is_drawn_as_what_it_is():
+    """A wall, a thing of no kind, and strays go to the page beside the shapes, and are told in words."""
+    wall = Wall(np.array([-0.5, 0.5]), np.array([0.5, 0.5]), np.zeros((9, 2)), 0.0)
+    other = Other(np.zeros((30, 2)), np.array([(0.0, 0.0), (0.1, 0.0), (0.0, 0.1)]))
+    told = describe(Found([], [wall], [other], np.array([(0.2, -0.1)])))
+    assert told["walls"] == [[[-5000, 5000], [5000, 5000]]]
+    assert told["others"] == [[[0, 0], [1000, 0], [0, 1000], [0, 0]]]
+    assert told["strays"] == [[2000, -1000]]
+    assert told["rest"] == "1 wall, 1 thing of no kind, 1 stray"
+
+
+def test_an_outline_of_any_size_can_be_drawn():
+    """Whoever fits a circle as large as the earth still drives."""
+    told = describe_shape(Detection(pk.Circle((0, 0), 6.4e6), np.zeros((0, 2)), float("nan")))
+    assert sum(len(stretch) for _, stretch in told["stretches"]) < 3000
+
+
+# One's own steps while driving.
+
+
+def own_scene(world, executor=None, **steps):
+    scene = Scene(DriveState(world, steps=pk.Steps(**steps), executor=executor))
+    scene.sent = []
+    scene.send = lambda content, _=None: scene.sent.append(content)
+    return scene
+
+
+def drive_round(scene, n):
+    """Drive so many steps; return what the page heard of trouble."""
+    for held in wandering(n):
+        scene.answer({"do": "step", "held": held})
+    return [message["trouble"] for message in scene.sent if message.get("trouble")]
+
+
+def too_large(points):
+    (x, y), radius = points.mean(axis=0), 0.2
+    return x, y, radius
+
+
+def divides(points):
+    return 1 / (len(points) - len(points))
+
+
+def for_ever(points):
+    while len(points):
+        pass
+
+
+def exits(_points):
+    raise SystemExit
+
+
+NONE_OF_ITS_POINTS = "fit_circle returns a circle that lies on none of its points; the drive goes on."
+ROUND = pk.World([pk.Circle((0.25, 0.0), 0.08)])
+
+
+def test_what_the_robot_sees_is_what_one_s_own_step_makes_of_it():
+    scene = own_scene(ROUND, fit_circle=too_large)
+    assert set(drive_round(scene, 40)) <= {NONE_OF_ITS_POINTS}
+    assert {one.shape.radius for one in scene.state.found if one.kind == "circle"} == {0.2}
+
+
+def test_a_segmentation_of_one_s_own_is_not_mended(world):
+    """Grouped left and right of the middle, four shapes are never found; a second opinion would find them."""
+    halves = pk.Steps(segment=lambda points, _: (points[:, 0] > 0).astype(int))
+    mended = pk.Mapper(steps=halves, rng=0)
+    mended.add(pk.scan(world, pk.teleport_poses(world)))
+    scene = own_scene(world, segment=halves.segment)
+    scene.state._mapper.add(pk.scan(world, pk.teleport_poses(world)))
+    scene.state.finish()
+    assert [len(mended.found), len(scene.state.found)] == [4, 2]
+    assert scene.state.score < pk.evaluate(mended.found, world).weighted_accuracy - 0.3
+    film = pk.replay(pk.Drive(pk.scan(world, pk.teleport_poses(world)), np.zeros((72, 2))), world, steps=halves)
+    assert pk.evaluate(film.film.looks[-1].found, world).weighted_accuracy == scene.state.score
+    film.close()
+
+
+@pytest.mark.parametrize(
+    ("steps", "sentence"),
+    [
+        ({"fit_circle": divides}, "fit_circle raises ZeroDivisionError: division by zero, in line "),
+        (
+            {"fit_circle": lambda _: "round"},
+            "fit_circle must return a Circle, (x, y, radius) or None, got 'round'; the ",
+        ),
+        (
+            {"fit_circle": lambda _: (5.0, 5.0, 0.1)},
+            "fit_circle returns a circle that lies on none of its points; the ",
+        ),
+        ({"segment": lambda _, __: None}, "segment must return a whole number for each of the "),
+        ({"fit_circle": exits}, "fit_circle raises SystemExit"),
+        ({"fit_circle": for_ever}, "fit_circle did not end, and was stopped after 0.2 s, in line "),
+    ],
+    ids=["raises", "another type", "elsewhere", "nothing", "exit", "for ever"],
+)
+def test_what_is_wrong_with_one_s_own_step_is_told_and_one_drives_on(steps, sentence, monkeypatch):
+    monkeypatch.setattr("primkit.scene.own_steps.LONGEST", 0.2)
+    scene = own_scene(ROUND, **steps)
+    told = drive_round(scene, 3)
+    assert told
+    assert all(words.startswith(sentence) and words.endswith("; the drive goes on.") for words in told)
+    assert scene.state.n_scans == 4
+
+
+def test_the_sentence_goes_once_the_step_does():
+    scene, broken = own_scene(ROUND, fit_circle=lambda points: 1 / 0 if broken else pk.fit_circle(points)), True
+    assert drive_round(scene, 3)
+    broken = False
+    drive_round(scene, 6)
+    assert scene.sent[-1]["trouble"] == ""
+
+
+def test_the_robot_does_not_wait_for_a_slow_step(monkeypatch):
+    """While a step takes its time, the drive goes on; the shapes tell their age, and the step its time."""
+    monkeypatch.setattr("primkit.scene.own_steps.SLOW", 0.05)
+    go_on = threading.Event()
+    scene = own_scene(ROUND, executor=Beside(), fit_circle=lambda points: go_on.wait(10) and too_large(points))
+    scene.answer({"do": "news"})
+    begun = time.monotonic()
+    drive_round(scene, 12)
+    assert time.monotonic() - begun < 5
+    time.sleep(0.1)
+    scene.answer({"do": "news"})
+    assert "shapes 1.2 s old" in scene.sent[-3]["score"]
+    assert scene.sent[-1]["trouble"] == "fit_circle has been at work for 0 s; the drive goes on."
+    assert scene.sent[-1]["busy"]
+    go_on.set()
+    scene.state.finish()
+    assert scene.state.n_scans_found == scene.state.n_scans
+    scene.close()
+
+
+def test_without_threads_looks_leave_most_of_the_time_to_the_robot(world, monkeypatch):
+    """In a browser a look makes the robot wait: while a key is held, there are fewer of them."""
+    monkeypatch.setattr(threading.Thread, "start", no_thread)
+    looks = []
+    for share in (0.2, 1e9):
+        monkeypatch.setattr("primkit.scene.scene.LOOKING_SHARE", share)
+        scene = own_scene(world, executor=Beside(), segment=slow_halves)
+        before = scene.state.n_scans_found
+        drive_round(scene, 20)
+        looks.append(len({message["score"] for message in scene.sent if "shapes" in message}))
+        scene.answer({"do": "step", "held": []})
+        assert scene.state.n_scans_found > before
+        assert not scene.state.looks, "who stands still sees all"
+        scene.close()
+    assert 1 <= looks[0] < looks[1]
+
+
+def no_thread(_self):
+    raise RuntimeError("can't start new thread")
+
+
+def slow_halves(points, _):
+    time.sleep(0.02)
+    return (points[:, 0] > 0).astype(int)
+
+
+def test_steps_that_are_none_are_refused(world):
+    with pytest.raises(ValueError, match=r"steps must be Steps, such as Steps\(fit_circle=mine\), got int"):
+        pk.drive_scene(world, steps=3)
+
+
+# A cell that runs again gives back what it made before.
+
+
+def test_a_cell_that_runs_again_closes_what_it_showed(world, monkeypatch):
+    runs = iter([("a", "1"), ("a", "1"), ("b", "2"), ("a", "3"), ("a", "4")])
+    monkeypatch.setattr("primkit.scene.given_back._this_run", lambda: next(runs))
+    scenes = [Scene(DriveState(world)) for _ in range(2)]
+    assert [scene.comm is None for scene in scenes] == [False, False], "what one run made stays together"
+    scenes += [Scene(DriveState(world)) for _ in range(2)]
+    assert [scene.comm is None for scene in scenes] == [True, True, False, False]
+    drive = pk.Drive(pk.scan(world, [(0, 0, 0)]), [(0, 0)])
+    film = pk.replay(drive)
+    assert [scene.comm is None for scene in scenes] == [True, True, False, True]
+    for one in (scenes[2], film):
+        one.close()

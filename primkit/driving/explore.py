@@ -24,16 +24,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arguments import Bools, Floats, as_count, as_rng, check_type
-from ..grid import Grid
+from ..found import Found
 from ..lidar import Lidar, Scans, as_lidar, scan
-from ..measure import Detection
-from ..pipeline import Memory, find_shapes
 from ..robot import BODY, PERIOD, advance, start_pose
 from ..show import thumbnail
+from ..steps import Steps
 from ..table import count
 from ..world import World
+from .mapper import Mapper, unmended
 from .next_views import View, next_view, shown_from
-from .seen_map import EXPLAINED, SQUARE, SeenMap, open_outlines
+from .seen_map import EXPLAINED, SQUARE, SeenMap, open_outlines, outlines_in
 from .ways import Ways, forward, ways_from, wheels_along
 
 Why = Literal["all is seen", "the rest cannot be seen", "out of scans"]
@@ -54,7 +54,7 @@ class Exploration:
     poses : array, shape (P, 3)
         Where it scanned: x [m], y [m], heading [rad], world frame.
     scans : Scans, what it saw from there
-    found : tuple of Detection, from left to right
+    found : Found, the shapes from left to right, and what else the points are
     wheels : array, shape (T, 2)
         How it drove: speeds of the left and the right wheel, rad/s, each pair held for a period of 0.1 s.
     path : array, shape (T + 1, 3)
@@ -69,7 +69,7 @@ class Exploration:
 
     poses: Floats
     scans: Scans
-    found: tuple[Detection, ...]
+    found: Found
     wheels: Floats
     path: Floats
     robot_time: float
@@ -93,6 +93,7 @@ def explore(
     lidar: Lidar | None = None,
     *,
     start: ArrayLike | None = None,
+    steps: Steps | None = None,
     rng: int | np.random.Generator | None = None,
     most_scans: int = MOST_SCANS,
 ) -> Exploration:
@@ -108,6 +109,8 @@ def explore(
     lidar : Lidar, default Lidar()
     start : array_like, shape (3,), optional
         As for ``drive``.
+    steps : Steps, optional
+        Functions of your own: what they find, the robot goes to look at. A segmentation of your own is not mended.
     rng : seed or numpy.random.Generator, optional
         The same seed gives the same exploration, to the last bit.
     most_scans : int, after which it stops
@@ -121,7 +124,7 @@ def explore(
     lidar = as_lidar(lidar)
     most_scans = as_count(most_scans, "most_scans")
     pose = advance(world, start_pose(world) if start is None else start, (0, 0), 0)[0]  # refused unless it is clear
-    tour = _Tour(world, lidar, pose, as_rng(rng))
+    tour = _Tour(world, lidar, pose, steps, as_rng(rng))
     why: Why | None = None
     while why is None:
         tour.look()
@@ -132,17 +135,17 @@ def explore(
 class _Tour:
     """A robot on its way: what it knows, and what it did so far."""
 
-    def __init__(self, world: World, lidar: Lidar, pose: Floats, rng: np.random.Generator) -> None:
+    def __init__(self, world: World, lidar: Lidar, pose: Floats, steps: Steps | None, rng: np.random.Generator) -> None:
         self.world, self.lidar = world, lidar
         self.path: list[Floats] = [pose]
         self.wheels: list[Floats] = []
         self.scans: list[Scans] = []
         self.scan_rng, find_rng = rng.spawn(2)
-        self.seed, self.memory = int(find_rng.integers(2**63)), Memory()
-        self.board, self.grid = SeenMap(world.size), Grid()
+        self.board = SeenMap(world.size)
+        self.mapper = Mapper(settings=unmended(steps), steps=steps, rng=find_rng)
         self.vain = np.zeros(self.board.free.shape, dtype=np.int64)  # how often each square was looked at in vain
         self.been = np.zeros(self.vain.shape, dtype=bool)  # squares that were scanned from
-        self.found: list[Detection] = []
+        self.found, self.outlines = Found(), outlines_in(Found())
         self.found_from = 0  # points that this was made of
         self.inside = self.explained = np.zeros(self.vain.shape, dtype=bool)
 
@@ -150,7 +153,7 @@ class _Tour:
         """Scan, and learn from it."""
         seen = scan(self.world, self.path[-1], self.lidar, rng=self.scan_rng)
         self.scans.append(seen)
-        self.grid.add(seen)
+        self.mapper.add(seen)
         self.board.add(seen, self.lidar.range_min, self.lidar.range_max)
         i, j = self.board.index(self.path[-1][:2])
         self.been[i, j] = True
@@ -175,18 +178,18 @@ class _Tour:
 
     def find(self) -> bool:
         """Ask what the points so far are; False when there are no new ones."""
-        if len(self.grid) == self.found_from:
+        if len(self.mapper.grid) == self.found_from:
             return False
-        self.found = find_shapes(self.grid, memory=self.memory, rng=self.seed)
-        self.found_from = len(self.grid)
-        shapes = [one.shape for one in self.found]
-        self.inside, self.explained = self.board.covered(shapes, 0.0), self.board.covered(shapes, EXPLAINED)
+        self.found, self.found_from = self.mapper.found, len(self.mapper.grid)
+        self.outlines = outlines_in(self.found)
+        self.inside = self.board.covered(self.outlines, 0.0)
+        self.explained = self.board.covered(self.outlines, EXPLAINED)
         return True
 
     def worth(self, *, give_up: bool = True) -> Floats:
         """Return what each square is worth to be seen, shape (N, N)."""
         open_ = np.zeros(self.vain.shape, dtype=bool)
-        open_[self.board.index(open_outlines(self.found))] = True
+        open_[self.board.index(open_outlines(self.outlines))] = True
         worth = 1.0 * self.board.hiding_places(self.explained) + OUTLINE_WORTH * open_
         return worth * (self.vain < MOST_LOOKS) if give_up else worth
 
@@ -220,4 +223,4 @@ class _Tour:
         scans = Scans(poses, self.lidar.angles, ranges, np.zeros(len(poses), dtype=bool))
         wheels = np.array(self.wheels).reshape(-1, 2)
         time = PERIOD * len(wheels) + self.lidar.period * len(scans)
-        return Exploration(poses, scans, tuple(self.found), wheels, np.array(self.path), time, why)
+        return Exploration(poses, scans, self.found, wheels, np.array(self.path), time, why)

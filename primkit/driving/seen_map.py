@@ -22,11 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import Bools, Floats
+from ..found import Found
 from ..lidar import Scans
-from ..measure import Detection
 from ..robot import BODY, check_places
 from ..seen import is_seen
-from ..shapes import Shape
+from ..shapes import Polygon, Shape
 from .moving_grid import BEFORE_A_HIT
 
 SQUARE = 0.01  # m: side of a square of the map
@@ -101,10 +101,10 @@ class SeenMap:
         self._bumps[self.index(place)] = True
         self.free &= ~self._bumps
 
-    def covered(self, found: list[Shape], reach: float) -> Bools:
-        """Tell which squares' centres lie in a shape or at most ``reach`` metres outside."""
+    def covered(self, outlines: list[tuple[Shape, Floats]], reach: float) -> Bools:
+        """Tell which squares' centres lie in an outline or at most ``reach`` metres outside."""
         inside = np.zeros(self.free.shape, dtype=bool)
-        for shape in found:
+        for shape, _ in outlines:
             inside |= shape.signed_distance(self.centers.reshape(-1, 2)).reshape(inside.shape) <= reach
         return inside
 
@@ -129,13 +129,19 @@ def join_hits(one: Scans) -> Floats:
     return np.vstack([hits[one.hits[0]], between])
 
 
-def open_outlines(found: list[Detection]) -> Floats:
-    """Return the places on outlines that are still open: more than 12 mm from each of the shape's own points.
+def outlines_in(found: Found) -> list[tuple[Shape, Floats]]:
+    """Return the outline and the points, shape (N, 2), metres, of each shape, and of each thing that is of no kind."""
+    others = [(Polygon(other.outline), other.points) for other in found.others]
+    return [*((one.shape, one.points) for one in found), *others]
 
-    Shape (N, 2), metres. Points that lie near the outline, but not on it, close nothing: the shape may be another.
+
+def open_outlines(outlines: list[tuple[Shape, Floats]]) -> Floats:
+    """Return the places on outlines that are still open: more than 12 mm from each of their own points.
+
+    Shape (N, 2), metres. Points that lie near an outline, but not on it, close nothing: the shape may be another.
     """
     open_ = [np.empty((0, 2))]
-    for one in found:
-        places = one.shape.outline(max(8, int(one.shape.perimeter / OUTLINE_STEP)))
-        open_.append(places[~is_seen(places, one.points)])
+    for shape, points in outlines:
+        places = shape.outline(max(8, int(shape.perimeter / OUTLINE_STEP)))
+        open_.append(places[~is_seen(places, points)])
     return np.vstack(open_)

@@ -1,32 +1,38 @@
 """Finder: look for shapes beside the drive, so that the robot never waits for them.
 
-In:  the points of the grid, again and again, while the map grows.
+In:  a ``Mapper``, again and again, while its map grows.
 Out: ``Look``: the shapes of the last look that is done, and how many scans it knew.
 
+>>> from primkit.driving.mapper import Mapper
 >>> from primkit.shapes import Circle
->>> finder = Finder(AtOnce())
->>> finder.look(Circle((0.1, 0.0), 0.06).outline(150), n_scans=7)
+>>> finder, mapper = Finder(AtOnce()), Mapper(rng=0)
+>>> mapper.add(Circle((0.1, 0.0), 0.06).outline(150))
+>>> finder.look(mapper, n_scans=7)
 >>> look = finder.news()
 >>> [one.kind for one in look.found], look.n_scans, finder.news()
 (['circle'], 7, None)
 
 There is one look at a time; another that is asked for meanwhile is not begun, and the next takes the points that are
-newest then. ``beside()`` looks in a thread of its own; ``AtOnce()`` in the caller's, so that the same drive gives the
-same shapes on any computer. ``thin_out`` bounds the cells of a look, and so its time and memory.
+newest then. ``Beside()`` looks in a thread that ends with the look; ``AtOnce()`` in the caller's, so that the same
+drive gives the same shapes on any computer. ``thin_out`` bounds the cells of a look, and so its time and memory.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import Executor, Future
+from copy import copy
 from dataclasses import dataclass
+from threading import Thread
 from typing import ParamSpec, TypeVar
 
 import numpy as np
 
-from ..arguments import Bools, Floats, Ints
-from ..measure import Detection
-from ..pipeline import Memory, find_shapes
+from ..arguments import Bools, Ints
+from ..driving.mapper import Mapper
+from ..found import Found
+from ..grid import Grid
+from .page import Message, describe
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -42,29 +48,49 @@ class AtOnce(Executor):
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
         """Do it, and return what came of it."""
         done: Future[T] = Future()
-        try:
-            done.set_result(fn(*args, **kwargs))
-        except Exception as error:  # it is for who asks for the result, as with any executor
-            done.set_exception(error)
+        _do(done, fn, *args, **kwargs)
         return done
 
 
-def beside() -> Executor:
-    """Return an executor with a thread of its own, one thing after the other; without threads, one that does it now."""
-    executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix="primkit-finder")
+class Beside(Executor):
+    """An executor with a thread for each thing to do, and none when there is nothing; without threads, it does it now.
+
+    What never ends keeps nobody from leaving: its thread ends with the program.
+    """
+
+    threads = True  # until it turns out that there are none
+
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        """Begin it, and return what will come of it."""
+        done: Future[T] = Future()
+        try:
+            Thread(target=_do, args=(done, fn, *args), kwargs=kwargs, name="primkit-finder", daemon=True).start()
+        except RuntimeError:  # a browser's Python cannot start one
+            self.threads = False
+            _do(done, fn, *args, **kwargs)
+        return done
+
+
+def _do(done: Future[T], fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> None:
+    """Do it, and tell the future what came of it."""
     try:
-        executor.submit(int)
-    except RuntimeError:  # a browser's Python cannot start one
-        return AtOnce()
-    return executor
+        done.set_result(fn(*args, **kwargs))
+    except Exception as error:  # it is for who asks for the result, as with any executor
+        done.set_exception(error)
 
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """The shapes that were found, from left to right, and how many scans the points were made of."""
+    """The shapes that were found, from left to right; how many scans the points were made of; and how all is drawn."""
 
-    found: list[Detection]
+    found: Found
     n_scans: int
+    drawn: Message
+
+    @classmethod
+    def at(cls, found: Found, n_scans: int) -> Look:
+        """Return the look; what it takes to draw it is worked out here, where the robot does not wait for it."""
+        return cls(found, n_scans, describe(found))
 
 
 def thin_out(cells: Ints, most: int = MOST_CELLS) -> Bools:
@@ -88,39 +114,40 @@ def thin_out(cells: Ints, most: int = MOST_CELLS) -> Bools:
 
 
 class Finder:
-    """Looks for shapes among points that grow, one look at a time.
+    """Looks for shapes in maps that grow, one look at a time.
 
     Parameters
     ----------
     executor : Executor
-        Who does the work: ``AtOnce()``, ``beside()``, or any other of ``concurrent.futures`` within this process.
-    rng : int
-        Seed for the search.
+        Who does the work: ``AtOnce()``, ``Beside()``, or any other of ``concurrent.futures`` within this process.
     """
 
-    def __init__(self, executor: Executor, rng: int = 0) -> None:
-        self._executor, self._seed = executor, rng
-        self.forget()
+    def __init__(self, executor: Executor) -> None:
+        self._executor = executor
+        self._under_way: Future[Look] | None = None
 
     def forget(self) -> None:
-        """Begin anew with other points; a look that is still under way is dropped."""
-        self._memory: Memory = {}
-        self._under_way: Future[Look] | None = None
+        """Drop a look that is still under way."""
+        self._under_way = None
 
     @property
     def busy(self) -> bool:
         """Whether a look is under way, or its shapes have not been fetched yet."""
         return self._under_way is not None
 
-    def look(self, points: Floats, n_scans: int) -> None:
-        """Begin to look for shapes among points, shape (N, 2), metres; while another look lasts, do nothing."""
+    @property
+    def in_the_way(self) -> bool:
+        """Whether looks make the robot wait, because there are no threads to do them beside the drive."""
+        return isinstance(self._executor, Beside) and not self._executor.threads
+
+    def look(self, mapper: Mapper, n_scans: int, most: int = MOST_CELLS) -> None:
+        """Begin to look at a map as it is now, or at so many of its cells; while another look lasts, do nothing."""
         if self._under_way is None:
-            memory, seed = self._memory, self._seed
-
-            def work() -> Look:
-                return Look(find_shapes(points, memory=memory, rng=seed), n_scans)
-
-            self._under_way = self._executor.submit(work)
+            grid = copy(mapper.grid)
+            if len(grid) > most:
+                grid = Grid(grid.resolution)
+                grid.add(mapper.grid.points()[thin_out(mapper.grid.cells, most)])
+            self._under_way = self._executor.submit(lambda: Look.at(mapper.look(grid), n_scans))
 
     def news(self, *, wait: bool = False) -> Look | None:
         """Return the look that was begun, once it is done (``wait`` for that), and once only; None without news.
@@ -128,24 +155,19 @@ class Finder:
         Raises
         ------
         Exception
-            Whatever ended the look, if it could not be finished. The next look is then a fresh one.
+            Whatever ended the look, if it could not be finished.
         """
         look = self._under_way
         if look is None or not (wait or look.done()):
             return None
         self._under_way = None
-        try:
-            return look.result()
-        except Exception:
-            self._memory = {}
-            raise
-
-    def close(self) -> None:
-        """Let the executor go, without waiting; looks that are asked for later are done at once."""
-        self._executor.shutdown(wait=False, cancel_futures=True)
-        self._executor = AtOnce()
-        self.forget()
+        return look.result()
 
     def submit(self, work: Callable[[], T]) -> Future[T]:
-        """Have other work done beside the drive, between two looks."""
+        """Have other work done beside the drive."""
         return self._executor.submit(work)
+
+    def close(self) -> None:
+        """Drop a look that is under way; those that are asked for later are done at once."""
+        self._executor = AtOnce()
+        self.forget()

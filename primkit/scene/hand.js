@@ -11,7 +11,8 @@ const PERIOD = 100; // ms: a step takes a tenth of a second
 const SOON = 90; // ms: timers are not exact
 const LATE = 5000; // ms: an answer that has not come by then will not come; the kernel may have been restarted
 const AWAY = "Click here, then drive with W A S D or the arrow keys, two at once.";
-const HERE = "You drive: W A S D or the arrow keys. A click elsewhere or Tab stops.";
+const HERE = "You drive: W A S D or the arrow keys. Escape or a click elsewhere stops.";
+const WRITES = "input, textarea, select, [contenteditable=true]"; // who is writing is not disturbed
 
 // The clock: while something is held it asks for a step every tenth of a second, and once more when all is let go;
 // never for a second one before the first is answered. The shortest tap is a step. While the kernel is busy beside the
@@ -75,6 +76,21 @@ class Clock {
   }
 }
 
+// The focus: a scene that has just come in sight takes it, so that no key goes to the notebook: d d deletes a cell.
+
+function takeFocus(root) {
+  const seen = new IntersectionObserver(([entry]) => {
+    seen.disconnect();
+    if (entry.isIntersecting && !document.activeElement?.closest(WRITES)) root.focus({ preventScroll: true });
+  });
+  seen.observe(root);
+}
+
+function leaveTo(place) {
+  document.activeElement.blur();
+  place?.focus({ preventScroll: true });
+}
+
 // The keys and the buttons.
 
 function listen(parts, clock, ask) {
@@ -94,6 +110,7 @@ function listen(parts, clock, ask) {
   root.addEventListener("keydown", (event) => {
     if (event.key === "Tab") return;
     event.stopPropagation(); // no key in here is the notebook's
+    if (event.key === "Escape") leaveTo(root.parentElement.closest("[tabindex]"));
     if (event.ctrlKey || event.altKey || event.metaKey || !(event.code in KEYS)) return;
     event.preventDefault(); // arrow keys would scroll the page
     clock.hold(event.code, KEYS[event.code]);
@@ -106,7 +123,7 @@ function listen(parts, clock, ask) {
   root.addEventListener("focusin", shown);
   root.addEventListener("focusout", (event) => root.contains(event.relatedTarget) || leave());
   root.addEventListener("pointerdown", (event) => {
-    if (event.target.tagName !== "BUTTON") root.focus({ preventScroll: true });
+    if (!event.target.closest("button, summary")) root.focus({ preventScroll: true });
   });
 
   parts.pad.forEach((button, i) => {

@@ -1,6 +1,6 @@
 """Page: what the page needs to know to draw a board with a robot; ``board.js`` draws it.
 
-In:  a ``Detection``, a board's size, a sensor.
+In:  a ``Found``, a board's size, a sensor.
 Out: messages: dictionaries of numbers and words, lengths in tenths of a millimetre.
 
 >>> tenths(np.array([[0.1, -0.02]]))
@@ -16,17 +16,21 @@ import numpy as np
 
 from ..arguments import Floats, Ints
 from ..driving.seen_map import OUTLINE_STEP
+from ..found import Found
 from ..lidar import Lidar
 from ..measure import Detection
-from ..palette import GREY, INK, KIND_COLORS, KIND_INKS, ORANGE, PALE, SKY
+from ..palette import GREY, INK, KIND_COLORS, KIND_INKS, ORANGE, PALE, SKY, darker
 from ..robot import BODY
 from ..seen import is_seen
 from ..shapes import Circle, Shape
 
 Message = dict[str, Any]
 
-PAGE_COLORS = {"ink": INK, "grey": GREY, "pale": PALE, "beam": SKY, "hit": ORANGE}
+PAGE_COLORS = {"ink": INK, "grey": GREY, "pale": PALE, "beam": darker(SKY), "hit": darker(ORANGE)}
 TENTH = 1e-4  # m: lengths go to the page in tenths of a millimetre
+FARTHEST_DRAWN = 100.0  # m: whoever fits a circle that is larger than this sees no difference
+MOST_ON_RING = 2000  # places on an outline: enough for one that is eight metres long
+NO_NAME_YET = "not certain"  # the name of what has not earned one
 
 
 def page(*names: str) -> str:
@@ -45,16 +49,29 @@ def tell_ranges(ranges: Floats) -> Ints:
     return np.where(np.isfinite(ranges), np.rint(ranges / TENTH), -1).astype(np.int64)
 
 
-def describe(one: Detection) -> Message:
+def describe(found: Found) -> Message:
+    """Return how all is drawn that was found: shapes, walls and other things, strays."""
+    return {
+        "shapes": [describe_shape(one) for one in found],
+        "walls": [tenths(np.array([wall.start, wall.end])) for wall in found.walls],
+        "others": [tenths(np.vstack([other.outline, other.outline[:1]])) for other in found.others],
+        "strays": tenths(found.strays),
+        "rest": found.rest(),
+    }
+
+
+def describe_shape(one: Detection) -> Message:
     """Return how a shape is drawn: its outline in stretches that were seen, or are only supposed, and its name.
 
-    Half of a circle was seen; the last stretch closes on the first:
+    A scan sees a few places on one side: that is no name yet. All around, it is.
 
-    >>> from primkit.robust.deviations import Certainty
-    >>> circle = Circle((0, 0), 0.1)
-    >>> told = describe(Detection(circle, circle.outline(200)[:101], 0.0, sure=Certainty((), (0.001,))))
-    >>> told["name"], [seen for seen, _ in told["stretches"]]
-    ('circle, radius 100 mm', [True, False, True])
+    >>> from primkit.pipeline import find_shapes
+    >>> ring = Circle((0, 0), 0.1).outline(200)
+    >>> for points in (ring[:40], ring):
+    ...     told = describe_shape(find_shapes(points, rng=0)[0])
+    ...     print(told["certain"], told["name"], [seen for seen, _ in told["stretches"]])
+    False not certain [True, False, True]
+    True circle, radius 100 mm [True]
     """
     ring = ring_of(one.shape)
     seen = is_seen(ring, one.points)
@@ -64,17 +81,19 @@ def describe(one: Detection) -> Message:
             stretches.append([bool(seen[start]), tenths(ring[start : end + 1])])
             start = end
     (place,) = tenths(one.shape.centroid[None])
-    return {"kind": one.kind, "name": _name(one), "place": place, "stretches": stretches}
+    name = _name(one) if one.certain else NO_NAME_YET
+    return {"kind": one.kind, "certain": one.certain, "name": name, "place": place, "stretches": stretches}
 
 
 def ring_of(shape: Shape) -> Floats:
     """Return points along the outline, the corners among them, the first one again as the last, shape (N, 2)."""
+    step = max(OUTLINE_STEP, shape.perimeter / MOST_ON_RING)
     if isinstance(shape, Circle):
-        ring = shape.outline(max(24, int(shape.perimeter / OUTLINE_STEP)))
+        ring = shape.outline(max(24, int(shape.perimeter / step)))
     else:
         ring = np.vstack(
             [
-                corner + np.linspace(0, 1, max(2, int(side / OUTLINE_STEP)), endpoint=False)[:, None] * edge
+                corner + np.linspace(0, 1, max(2, int(side / step)), endpoint=False)[:, None] * edge
                 for corner, edge, side in zip(shape.vertices, shape.edges, shape.sides, strict=True)
             ]
         )
@@ -83,7 +102,9 @@ def ring_of(shape: Shape) -> Floats:
 
 def _name(one: Detection) -> str:
     """Return kind and dimensions in millimetres; a question mark for what was not measured."""
-    lengths = [f"{1000 * d:.0f}" if known else "?" for d, known in zip(one.shape.dimensions, one.measured, strict=True)]
+    dimensions = one.shape.dimensions
+    measured = one.measured or (True,) * len(dimensions)  # somebody's own fit tells of none
+    lengths = [f"{1000 * d:.0f}" if known else "?" for d, known in zip(dimensions, measured, strict=True)]
     if isinstance(one.shape, Circle):
         return f"circle, radius {lengths[0]} mm"
     if one.kind == "rectangle":
@@ -95,5 +116,5 @@ def _name(one: Detection) -> str:
 
 def tenths(points: Floats) -> list[list[int]]:
     """Return points in tenths of a millimetre: short to send, and finer than a screen."""
-    told: list[list[int]] = np.rint(points / TENTH).astype(int).tolist()
+    told: list[list[int]] = np.rint(np.clip(points, -FARTHEST_DRAWN, FARTHEST_DRAWN) / TENTH).astype(int).tolist()
     return told

@@ -1,7 +1,11 @@
 // A film of a drive in the page: play, pause, and a slider for the time. The kernel puts board.js in front of it, sends
 // all at once, and is not needed any more.
 
-const LEGEND = "Blue lines: beams. Dots: cells that were hit. Solid outline: seen. Dashed: only supposed. Grey: the truth.";
+const LEGEND = [
+  "Thin lines: beams. Dots: cells that were hit. In colour: certain; grey, with ?: not certain what it is.",
+  "Solid: seen; dashed: only supposed. Thick: a wall; dotted: of no kind; squares: strays. Pale: the truth.",
+].join(" ");
+const NOTHING = { shapes: [], score: "0 found", rest: "" };
 const STEP = 0.004; // m: the way is drawn in steps of this length
 const FASTER = [1, 4, 16]; // times as fast as it was driven
 
@@ -11,15 +15,18 @@ function build(el) {
     "aria-label": "A drive, played",
     "data-lm-suppress-shortcuts": "true", // else Lab takes the keys of the slider and the buttons for its own
   });
+  const seat = made(root, "div", "seat");
+  const view = made(seat, "div", "view"), panel = made(seat, "div", "panel");
   const parts = { root };
-  parts.canvas = made(root, "canvas", "", { "role": "img", "aria-label": "The board" });
-  parts.score = made(root, "p", "score");
-  parts.time = made(root, "input", "time", { "type": "range", "min": "0", "value": "0", "aria-label": "Scan" });
-  const controls = made(root, "div", "others");
+  parts.canvas = made(view, "canvas", "", { "role": "img", "aria-label": "The board" });
+  parts.score = made(panel, "p", "score");
+  parts.rest = made(panel, "p", "rest");
+  parts.time = made(panel, "input", "time", { "type": "range", "min": "0", "value": "0", "aria-label": "Scan" });
+  const controls = made(panel, "div", "others");
   parts.play = made(controls, "button", "play", { "type": "button" }, "Play");
   parts.speed = made(controls, "button", "speed", { "type": "button" });
   parts.truth = made(controls, "button", "truth", { "type": "button", "aria-pressed": "false" }, "Show the truth");
-  made(root, "p", "legend", {}, LEGEND);
+  made(panel, "p", "legend", {}, LEGEND);
   return parts;
 }
 
@@ -50,16 +57,16 @@ class Film {
   }
 
   after(scan) {
-    const look = this.looks.findLast((one) => one.scan <= scan) ?? { shapes: [], score: "0 found" };
+    const look = this.looks.findLast((one) => one.scan <= scan) ?? NOTHING;
     const { board, look: colors } = this;
     const seen = { pose: this.poses[scan], ranges: this.rangesOf(scan), cells: this.cells.slice(0, this.known[scan]) };
-    return { board, look: colors, ...seen, way: this.wayTo(scan), shapes: look.shapes, found: look.score };
+    return { ...look, board, look: colors, ...seen, way: this.wayTo(scan), found: look.score };
   }
 }
 
 function render({ model, el }) {
   const parts = build(el);
-  const picture = new Picture(parts.canvas);
+  const picture = new Picture(parts.canvas, parts.root);
   let film, scan = 0, playing, faster = 0, truthful = false, due = 0;
 
   const show = () => {
@@ -75,8 +82,8 @@ function render({ model, el }) {
     parts.speed.textContent = `${FASTER[faster]} × as fast`;
     parts.truth.setAttribute("aria-pressed", String(truthful));
     parts.truth.hidden = film.truths.length === 0;
-    const names = known.shapes.map(({ name }) => name).join("; ") || "no shape found yet";
-    parts.canvas.setAttribute("aria-label", `The board: ${names}.`);
+    parts.rest.textContent = known.rest && `Also ${known.rest}.`;
+    parts.canvas.setAttribute("aria-label", told(known));
     parts.root.dataset.scan = scan;
   };
   const soon = () => (due ||= requestAnimationFrame(show));
@@ -120,14 +127,13 @@ function render({ model, el }) {
   });
   parts.root.addEventListener("keydown", (event) => event.key !== "Tab" && event.stopPropagation()); // not the notebook's
   model.on("msg:custom", hear);
-  const sized = new ResizeObserver(soon);
-  sized.observe(parts.canvas);
+  const unwatch = onLook(parts.canvas, soon);
   model.send({ do: "hello" });
 
   return () => {
     clearInterval(playing);
     model.off("msg:custom", hear);
-    sized.disconnect();
+    unwatch();
     cancelAnimationFrame(due);
   };
 }

@@ -22,20 +22,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import Ints, check_type
+from ..driving.mapper import Mapper, unmended
 from ..evaluation import evaluate
 from ..formats import Drive
 from ..grid import Grid
-from ..pipeline import Memory, find_shapes
+from ..steps import Steps
 from ..table import count
 from ..world import World
 from .finder import Look
-from .page import Message, board_and_look, describe, page, ring_of, tell_ranges, tenths
+from .given_back import made_before
+from .page import Message, board_and_look, page, ring_of, tell_ranges, tenths
 
 GROWTH = 1.2  # so many times the cells are worth another look
 MOST_RANGE = 32_767  # tenths of a millimetre: ranges go to the page as whole numbers of 16 bits
 
 
-def replay(drive: Drive, world: World | None = None, *, rng: int = 0) -> Replay:
+def replay(drive: Drive, world: World | None = None, *, steps: Steps | None = None, rng: int = 0) -> Replay:
     """Show a drive as a film: play, pause, and a slider for the time.
 
     Raises ValueError if the drive has no scans, or an argument is of another type.
@@ -46,6 +48,8 @@ def replay(drive: Drive, world: World | None = None, *, rng: int = 0) -> Replay:
         What was driven and seen.
     world : World, optional
         The truth: then the score is shown, and a button that shows the outlines.
+    steps : Steps, optional
+        Functions of your own: the film shows what they would have found. A segmentation of your own is not mended.
     rng : int
         Seed for the search.
 
@@ -67,29 +71,29 @@ def replay(drive: Drive, world: World | None = None, *, rng: int = 0) -> Replay:
     check_type(rng, int, "rng must be a seed, a whole number")
     if len(drive) == 0:
         raise ValueError("a drive must have scans to be played, got none")
-    return Replay(drive, world, Film(drive, rng))
+    return Replay(drive, world, Film(drive, steps, rng))
 
 
 class Film:
     """What is new with each scan of a ``Drive``; ``rng`` is the seed for the search."""
 
-    def __init__(self, drive: Drive, rng: int = 0) -> None:
+    def __init__(self, drive: Drive, steps: Steps | None = None, rng: int = 0) -> None:
         grid, scans = Grid(), drive.scans
         cells, first = np.unique(grid.to_cells(scans.points()), axis=0, return_index=True)
         scan_of = np.nonzero(scans.hits)[0][first]
         order = np.argsort(scan_of, kind="stable")
         self.cells: Ints = cells[order]  # in the order in which they were seen, shape (M, 2)
         self.known: Ints = np.searchsorted(scan_of[order], np.arange(len(drive)), side="right")  # after each scan
-        self.looks = self._looked_at(grid, rng)
+        self.looks = self._looked_at(drive, Mapper(settings=unmended(steps), steps=steps, rng=rng))
 
-    def _looked_at(self, grid: Grid, rng: int) -> list[Look]:
+    def _looked_at(self, drive: Drive, mapper: Mapper) -> list[Look]:
         """Return the shapes on the way, whenever the map has grown enough, and in the end."""
-        memory: Memory = {}
-        looks, n_looked_at, last = [], 0, len(self.known) - 1
-        for number, n in enumerate(self.known.tolist()):
-            if n > n_looked_at and (n >= GROWTH * n_looked_at or number == last):
-                points = grid.to_points(self.cells[:n])
-                looks.append(Look(find_shapes(points, memory=memory, rng=rng), number + 1))
+        looks, n_looked_at = [], 0
+        for number in range(len(drive)):
+            mapper.add(drive.scans[number : number + 1])
+            n = len(mapper.grid)
+            if n > n_looked_at and (n >= GROWTH * n_looked_at or number == len(drive) - 1):
+                looks.append(Look.at(mapper.found, number + 1))
                 n_looked_at = n
         return looks
 
@@ -103,6 +107,8 @@ class Replay(anywidget.AnyWidget):
     def __init__(self, drive: Drive, world: World | None, film: Film) -> None:
         super().__init__()
         self.drive, self.world, self.film = drive, world, film
+        for one in made_before(self):
+            one.close()
         self.on_msg(lambda _, asked, __: self.answer(asked))
 
     def __repr__(self) -> str:
@@ -119,10 +125,7 @@ class Replay(anywidget.AnyWidget):
         """Return all but the ranges and the cells, which go to the page as numbers of two and of four bytes."""
         drive, truth = self.drive, () if self.world is None else self.world.shapes
         size = 1.0 if self.world is None else self.world.size
-        looks = [
-            {"scan": look.n_scans - 1, "shapes": [describe(one) for one in look.found], "score": self._score(look)}
-            for look in self.film.looks
-        ]
+        looks = [{"scan": look.n_scans - 1, "score": self._score(look)} | look.drawn for look in self.film.looks]
         return board_and_look(size, drive.lidar, Grid().resolution) | {
             "poses": np.round(drive.poses, 5).tolist(),
             "beams": drive.lidar.beams,

@@ -18,11 +18,11 @@ from dataclasses import dataclass
 
 from ..arguments import Floats
 from ..driving import explore
+from ..driving.mapper import Mapper, unmended
 from ..evaluation import evaluate
-from ..grid import Grid
 from ..lidar import Lidar, scan
-from ..pipeline import find_shapes
 from ..robot import teleport_poses, waypoints
+from ..steps import Steps
 from ..table import Table
 from ..world import World
 
@@ -54,25 +54,24 @@ def compare_runs(runs: Sequence[Run]) -> Table:
     return Table(("", "scans", "robot time", "found", "score", ""), [run.cells() for run in runs], lines=tuple(runs))
 
 
-def automatic_runs(world: World, lidar: Lidar, rng: int) -> tuple[Run, Run]:
+def automatic_runs(world: World, lidar: Lidar, rng: int, steps: Steps | None = None) -> tuple[Run, Run]:
     """Return what the two automatic movements find on a board."""
-    return _scan_from_waypoints(world, lidar, rng), _explore(world, lidar, rng)
+    return _scan_from_waypoints(world, lidar, rng, steps), _explore(world, lidar, rng, steps)
 
 
-def _scan_from_waypoints(world: World, lidar: Lidar, rng: int) -> Run:
+def _scan_from_waypoints(world: World, lidar: Lidar, rng: int, steps: Steps | None) -> Run:
     """Scan from the paper's way-points, all of whose periods count, and find what is there."""
-    poses = teleport_poses(world)
-    grid = Grid()
-    grid.add(scan(world, poses, lidar, rng=rng))
-    found = find_shapes(grid, rng=rng)
+    poses, mapper = teleport_poses(world), Mapper(settings=unmended(steps), steps=steps, rng=rng)
+    mapper.add(scan(world, poses, lidar, rng=rng))
+    found = mapper.found
     note = "the robot is set down at each; the ways between are not counted"
     time, score = len(waypoints(world.size)) * lidar.period, evaluate(found, world).weighted_accuracy
     return Run("way-points", len(poses), time, len(found), score, note, poses[:, :2])
 
 
-def _explore(world: World, lidar: Lidar, rng: int) -> Run:
+def _explore(world: World, lidar: Lidar, rng: int, steps: Steps | None) -> Run:
     """Let the robot find its own way, and find what is there."""
-    tour = explore(world, lidar, rng=rng)
-    score, places = evaluate(list(tour.found), world).weighted_accuracy, tour.poses[:, :2]
+    tour = explore(world, lidar, steps=steps, rng=rng)
+    score, places = evaluate(tour.found, world).weighted_accuracy, tour.poses[:, :2]
     note = "it drives, stands still, and scans"
     return Run("explore", tour.n_scans, tour.robot_time, len(tour.found), score, note, places)

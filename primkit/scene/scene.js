@@ -10,8 +10,9 @@ const OTHERS = [
   ["automatic", "Compare: automatic", false],
 ];
 const LEGEND = [
-  "Blue lines: beams. Dots: cells that were hit. Solid outline: seen. Dashed: only supposed.",
-  "Hatched: not seen yet. Grey: the truth. Scans of the robot alone: + at way-points, \u25c7 exploring.",
+  "Thin lines: beams. Dots: cells that were hit. In colour: certain; grey, with ?: not certain what it is.",
+  "Solid: seen; dashed: only supposed. Thick: a wall; dotted: of no kind; squares: strays.",
+  "Hatched: not seen yet. Pale: the truth. Scans of the robot alone: + at way-points, \u25c7 exploring.",
 ].join(" ");
 
 // The page.
@@ -20,15 +21,19 @@ function build(el) {
   const root = made(el, "div", "primkit-scene", {
     "tabindex": "0",
     "role": "application",
-    "aria-label": "Robot on a board. Drive it with W A S D or the arrow keys; Tab leads to the buttons.",
+    "aria-label": "Robot on a board. Drive it with W A S D or the arrow keys; Tab leads to the buttons, Escape away.",
     "data-lm-suppress-shortcuts": "true", // else Lab takes the keys for its own: d d deletes a cell
   });
+  const seat = made(root, "div", "seat");
+  const view = made(seat, "div", "view"), panel = made(seat, "div", "panel");
   const parts = { root };
-  parts.focus = made(root, "p", "focus", {}, AWAY);
-  parts.canvas = made(root, "canvas", "", { "role": "img", "aria-label": "The board" });
-  parts.score = made(root, "p", "score");
-  parts.says = made(root, "p", "says", { "role": "status", "aria-live": "polite" });
-  const controls = made(root, "div", "controls");
+  parts.canvas = made(view, "canvas", "", { "role": "img", "aria-label": "The board" });
+  made(view, "div", "cover", { "aria-hidden": "true" }, "Click to drive");
+  parts.focus = made(panel, "p", "focus", {}, AWAY);
+  parts.score = made(panel, "p", "score");
+  parts.rest = made(panel, "p", "rest");
+  parts.trouble = made(panel, "p", "trouble", { "role": "alert" });
+  const controls = made(panel, "div", "controls");
   const pad = made(controls, "div", "pad", { "role": "group", "aria-label": "Drive" });
   parts.pad = PAD.map(([word, sign]) => made(pad, "button", word, { "type": "button", "aria-label": word }, sign));
   const others = made(controls, "div", "others");
@@ -36,9 +41,12 @@ function build(el) {
     const pressed = toggles ? { "aria-pressed": "false" } : {};
     return made(others, "button", word, { "type": "button", ...pressed }, label);
   });
-  parts.automatic = made(root, "div", "automatic", { "role": "status", "aria-live": "polite" });
-  parts.record = made(root, "p", "record");
-  made(root, "p", "legend", {}, LEGEND);
+  parts.says = made(panel, "p", "says", { "role": "status", "aria-live": "polite" });
+  parts.automatic = made(panel, "div", "automatic", { "role": "status", "aria-live": "polite" });
+  parts.record = made(panel, "p", "record");
+  const legend = made(panel, "details", "legend");
+  made(legend, "summary", "", {}, "What do the lines mean?");
+  made(legend, "p", "", {}, LEGEND);
   return parts;
 }
 
@@ -82,10 +90,12 @@ function squares(n, bits) {
 
 // All together.
 
+const write = (part, words = "") => part.textContent === words || (part.textContent = words); // told aloud only if new
+
 function render({ model, el }) {
   const parts = build(el);
   const known = { cells: new Map(), way: [], shapes: [] };
-  const picture = new Picture(parts.canvas);
+  const picture = new Picture(parts.canvas, parts.root);
   const ask = (message) => model.send(message);
   const clock = new Clock(ask);
   const forget = listen(parts, clock, ask);
@@ -94,19 +104,21 @@ function render({ model, el }) {
   let due = 0, tabled_;
   const show = () => {
     due = 0;
+    if (!known.board) return;
     picture.draw(known);
-    parts.score.textContent = known.score ?? "";
-    parts.record.textContent = known.record ?? "";
+    write(parts.score, known.score);
+    write(parts.rest, known.rest && `Also ${known.rest}.`);
+    write(parts.trouble, known.trouble);
+    write(parts.record, known.record);
     if (known.automatic !== tabled_) tabled(parts.automatic, (tabled_ = known.automatic)?.table);
     parts.others.forEach((button, i) => {
       const state = toggled[OTHERS[i][0]];
       if (OTHERS[i][0] === "move") button.hidden = !known.moving;
       if (state) button.setAttribute("aria-pressed", String(Boolean(state())));
     });
-    const names = known.shapes.map(({ name }) => name).join("; ") || "no shape found yet";
-    parts.canvas.setAttribute("aria-label", `The board: ${names}.`);
+    parts.canvas.setAttribute("aria-label", told(known));
     parts.root.dataset.scans = known.scans; // what is drawn now
-    parts.root.dataset.pose = (known.pose ?? []).join(" ");
+    parts.root.dataset.pose = known.pose.join(" ");
     parts.root.dataset.busy = clock.busy; // whether shapes are looked for still
   };
   const soon = () => (due ||= requestAnimationFrame(show));
@@ -114,19 +126,19 @@ function render({ model, el }) {
   const hear = (message, buffers) => {
     clock.hear(message);
     learn(known, message, buffers);
-    if (message.say) parts.says.textContent = message.say;
+    if (message.say) write(parts.says, message.say);
     soon();
   };
   model.on("msg:custom", hear);
-  const sized = new ResizeObserver(soon);
-  sized.observe(parts.canvas);
+  const unwatch = onLook(parts.canvas, soon);
   ask({ do: "hello" });
+  takeFocus(parts.root);
 
   return () => {
     clock.stop();
     clock.end();
     model.off("msg:custom", hear);
-    sized.disconnect();
+    unwatch();
     cancelAnimationFrame(due);
     forget();
   };

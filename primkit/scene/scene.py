@@ -17,6 +17,7 @@ is drawn, unless the truth is switched on; the score knows the truth.
 
 from __future__ import annotations
 
+import time
 from concurrent.futures import Executor, Future
 from functools import partial
 from pathlib import Path
@@ -24,16 +25,21 @@ from pathlib import Path
 import anywidget
 import numpy as np
 
+from ..found import Found
 from ..lidar import Lidar
+from ..steps import Steps
 from ..table import count
 from ..world import World
-from .finder import beside
+from .finder import Beside, Look
+from .given_back import made_before
 from .keys import wheels_for
-from .page import Message, board_and_look, describe, page, ring_of, tell_ranges, tenths
+from .own_steps import StepError
+from .page import Message, board_and_look, page, ring_of, tell_ranges, tenths
 from .runs import Run, automatic_runs, compare_runs
 from .state import DriveState
 
 FRESH_SCANS = 5  # scans: outlines that know all scans but so many are as good as new
+LOOKING_SHARE = 0.2  # of the time, at most, goes to looks while somebody drives where there is no thread for them
 
 
 def drive_scene(
@@ -42,6 +48,7 @@ def drive_scene(
     *,
     journal: str | Path | None = None,
     moving: bool = False,
+    steps: Steps | None = None,
     rng: int = 0,
     executor: Executor | None = None,
 ) -> Scene:
@@ -60,6 +67,10 @@ def drive_scene(
         is there already stays as it is: the next free of ``drive.jsonl``, ``drive-2.jsonl``, ... is taken.
     moving : bool
         Whether things may be moved meanwhile, by a button more; the map then gives up what later scans contradict.
+    steps : Steps, optional
+        Functions of your own in the place of the library's: what the robot sees is then what they make of its points,
+        while you drive. A segmentation of your own is not mended. Whatever they do, the robot follows the keys; what
+        is slow, raises or returns nonsense is told in the scene.
     rng : int
         Seed for the sensor's noise, for the search, and for what is moved where.
     executor : Executor, optional
@@ -78,8 +89,8 @@ def drive_scene(
         ...
     ValueError: journal must be a file name that ends in .jsonl, got drive.txt
     """
-    executor = beside() if executor is None else executor
-    return Scene(DriveState(world, lidar, journal=journal, moving=moving, rng=rng, executor=executor))
+    executor = Beside() if executor is None else executor
+    return Scene(DriveState(world, lidar, journal=journal, moving=moving, steps=steps, rng=rng, executor=executor))
 
 
 class Scene(anywidget.AnyWidget):
@@ -98,10 +109,13 @@ class Scene(anywidget.AnyWidget):
         super().__init__()
         self.state = state
         self.paused = self.shows_unseen = self.shows_truth = False
-        self._shown: list[Message] = []  # the shapes as the page has them
-        self._shown_of = 0  # how many scans they were found in
+        self._shown = state.last  # the look that the page has
+        self._failed = ""  # why the last look could not be finished
+        self._look_from = 0.0  # s, by the clock: no look before, where looks block the way
         self._automatic: Future[tuple[Run, Run]] | None = None  # under way, or done
         self._compared: Message | None = None
+        for one in made_before(self):
+            one.close()
         self.on_msg(lambda _, asked, __: self.answer(asked))
 
     def __repr__(self) -> str:
@@ -154,39 +168,55 @@ class Scene(anywidget.AnyWidget):
         if state.stopped:
             message["say"] = "Something is in the way: the robot only turns."
         self.send(message)
-        self.send(self._news() | {"done": True})
+        self.send(self._news(held=bool(held)) | {"done": True})
         if self.shows_unseen:
             self._send_unseen()
 
-    def _news(self) -> Message:
+    def _news(self, held: bool = False) -> Message:
         """Return what has come of the work beside the drive, and whether there is more to come."""
-        return self._mapped() | self._comparison() | {"busy": self._busy}
+        return self._mapped(held) | self._comparison() | {"busy": self._busy}
 
     @property
     def _busy(self) -> bool:
         """Whether there is more to come, even if nobody drives."""
         return self.state.looks or (self._automatic is not None and self._compared is None)
 
-    def _mapped(self) -> Message:
+    def _mapped(self, held: bool) -> Message:
         """Fetch shapes, begin to look for them if it is time to; return what is new about them."""
-        try:
-            self.state.map()
-        except Exception as error:  # whatever it is: who drives must hear of it, and can drive on
-            return {"say": f"The look for shapes failed, the drive goes on: {type(error).__name__}: {error}"}
-        if self.state.n_scans_found == self._shown_of:
+        begun = time.monotonic()
+        if held and self.state.finder.in_the_way and begun < self._look_from:
             return {}
-        before, self._shown = self._shown, [describe(one) for one in self.state.found]
-        self._shown_of = self.state.n_scans_found
-        if self._shown == before:
-            return {"score": self._score()}
-        return {"shapes": self._shown, "score": self._score(), "say": _news_of(before, self._shown)}
+        try:
+            if self.state.map():
+                self._failed = ""
+        except Exception as error:  # whatever it is: who drives must hear of it, and can drive on
+            self._failed = (
+                str(error) if isinstance(error, StepError | ValueError) else f"{type(error).__name__}: {error}"
+            )
+        self._look_from = begun + (time.monotonic() - begun) / LOOKING_SHARE
+        before, self._shown = self._shown, self.state.last
+        if self._shown is before:
+            return {"trouble": self._trouble()}
+        return self._shown.drawn | {
+            "score": self._score(),
+            "trouble": self._trouble(),
+            "say": _news_of(before, self._shown),
+        }
+
+    def _trouble(self) -> str:
+        """Return in one sentence what is the matter with somebody's own steps; nothing if all is well."""
+        own = self.state.own
+        what = self._failed or own.nonsense(self.state.found) or own.slow
+        return f"{what}; the drive goes on." if what else ""
 
     def _score(self) -> str:
         state = self.state
         driven = f"{state.time:.1f} s · {count(state.n_scans, 'scan')}"
+        open_ = sum(not one.certain for one in state.found)  # asked before, where nobody waits: kept since
+        found = f"{len(state.found)} found" + (f", {open_} not certain" if open_ else "")
         age = state.n_scans - state.n_scans_found
-        old = f" · shapes {age} scans old" if age > FRESH_SCANS and state.looks else ""
-        return f"{driven} · {len(state.found)} found · score {state.score:.2f}{old}"
+        old = f" · shapes {age * state.lidar.period:.1f} s old" if age > FRESH_SCANS and state.looks else ""
+        return f"{driven} · {found} · score {state.score:.2f}{old}"
 
     def _now(self) -> Message:
         """Return what every step changes: pose, ranges, time, score."""
@@ -198,9 +228,9 @@ class Scene(anywidget.AnyWidget):
     def _send_all(self, say: str = "") -> None:
         """Send all that there is: to a page that knows nothing, or shall forget what it knows."""
         state = self.state
-        self._shown, self._shown_of = [describe(one) for one in state.found], state.n_scans_found
+        self._shown = state.last
         same = board_and_look(state.world.size, state.lidar, state.grid.resolution) | {"moving": state.moving}
-        all_ = {"cells": state.grid.cells.tolist(), "shapes": self._shown, "automatic": self._compared}
+        all_ = self._shown.drawn | {"cells": state.grid.cells.tolist(), "automatic": self._compared}
         self.send(self._now() | same | all_ | self._truth() | {"paused": self.paused, "say": say, "busy": self._busy})
         self._send_unseen()
 
@@ -227,7 +257,7 @@ class Scene(anywidget.AnyWidget):
         """Begin to drive by itself on this board, beside the drive by hand; or say again what came of it."""
         state = self.state
         if self._automatic is None:
-            work = partial(automatic_runs, state.world, state.lidar, state.seed)
+            work = partial(automatic_runs, state.world, state.lidar, state.seed, state.steps and state.own.steps)
             self._automatic = state.finder.submit(work)
             self.send({"say": "The robot drives by itself now: way-points, then explore."})
         self.send(self._news())
@@ -253,10 +283,17 @@ class Scene(anywidget.AnyWidget):
         super().close()
 
 
-def _news_of(before: list[Message], now: list[Message]) -> str:
+def _news_of(before: Look, now: Look) -> str:
     """Say in one sentence what is new about the shapes; nothing when only their measures have changed."""
-    if [one["kind"] for one in before] == [one["kind"] for one in now]:
+    names, known = (_names_of(look.found) for look in (now, before))
+    if names == known:
         return ""
-    if not now:
-        return "No shape is found any more."
-    return f"Found so far: {', '.join(one['kind'] for one in now)}."
+    return f"Found so far: {names}." if names else "No shape is found any more."
+
+
+def _names_of(found: Found) -> str:
+    """Return the kinds of what is certain, and how many are not: "circle, pentagon, and 2 that are not certain"."""
+    names = [one.kind for one in found if one.certain]
+    open_ = len(found) - len(names)
+    rest = [f"{'and ' * bool(names)}{open_} that {'is' if open_ == 1 else 'are'} not certain"] if open_ else []
+    return ", ".join(names + rest)

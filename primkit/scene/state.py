@@ -31,19 +31,22 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arguments import Ints, check_type
+from ..driving.mapper import Mapper, unmended
 from ..driving.moving_grid import MovingGrid
-from ..driving.seen_map import EXPLAINED, SeenMap
+from ..driving.seen_map import EXPLAINED, SeenMap, outlines_in
 from ..evaluation import evaluate
 from ..formats import DriveJournal, record_drive
+from ..found import Found
 from ..grid import Grid
 from ..lidar import Lidar, Scans, as_lidar, scan
-from ..measure import Detection
 from ..robot import advance, start_pose
+from ..steps import Steps
 from ..table import Table
 from ..world import World
-from .finder import MOST_CELLS, AtOnce, Finder, thin_out
+from .finder import MOST_CELLS, AtOnce, Finder, Look
 from .keys import STANDING_WHEELS
 from .moved_shape import find_left_within, move_one_shape
+from .own_steps import OwnSteps
 from .runs import Run, automatic_runs, compare_runs
 
 NEWS_SHARE = 0.01  # when this share of the cells has come or gone since the last look, it is time for another
@@ -70,10 +73,10 @@ class DriveState:
 
     Parameters
     ----------
-    world, lidar, journal, moving, rng
+    world, lidar, journal, moving, steps, rng
         As for ``drive_scene``. The journal is made with the first step, and another one after ``undo``.
     executor : Executor, optional
-        Who looks for shapes: ``AtOnce()`` by default, ``beside()`` in a thread of its own.
+        Who looks for shapes: ``AtOnce()`` by default, ``Beside()`` in a thread of its own.
     """
 
     def __init__(
@@ -83,38 +86,62 @@ class DriveState:
         *,
         journal: str | Path | None = None,
         moving: bool = False,
+        steps: Steps | None = None,
         rng: int = 0,
         executor: Executor | None = None,
     ) -> None:
         check_type(world, World, "world must be a World, as in drive_scene(world)")
         self.lidar, self.seed, self.moving = as_lidar(lidar), rng, moving
         check_type(moving, bool, "moving must be True or False")
+        self.steps = steps
+        self.own = OwnSteps(Steps() if steps is None else steps)
         check_type(rng, int, "rng must be a seed, a whole number")
         self.journal = None if journal is None else Path(journal)
         if self.journal is not None and self.journal.suffix != ".jsonl":
             raise ValueError(f"journal must be a file name that ends in .jsonl, got {self.journal.name}")
         self._start_world = world
         self._written: DriveJournal | None = None
-        self.finder = Finder(AtOnce() if executor is None else executor, rng)
+        self.finder = Finder(AtOnce() if executor is None else executor)
         self.undo()
-        self.finish()
+        if steps is None:
+            self.finish()
 
     def undo(self) -> None:
         """Go back to the start and forget all that was seen; what was written to a journal stays."""
         self._end_journal()
-        self.finder.forget()
         self.trouble = ""  # why the journal could not be written, in one sentence
         self.world, self.pose, self.n_scans, self.stopped = self._start_world, start_pose(self._start_world), 0, False
-        self.grid: Grid | MovingGrid = MovingGrid(lidar=self.lidar) if self.moving else Grid()
+        self._map_anew(MovingGrid(lidar=self.lidar) if self.moving else Grid())
         self._cells = self.grid.cells  # as they were told last
-        self.found = list[Detection]()
-        self.n_scans_found = 0  # how many scans the shapes were found in
+        self.last = Look.at(Found(), 0)  # the last look that was done
+        self._scored = (self.last, self.world, 0.0)
         self.seen_map = SeenMap(self.world.size)
         self._rng, self._hand = np.random.default_rng(self.seed), np.random.default_rng([self.seed, 1])
         self._n_news = 0  # cells that have come or gone since the last look began
         self._rests = True  # stands, or sees nothing new
         self._scan()
-        self.map()
+        if self.steps is None:  # somebody's own may be slow, or wrong: first there is something to drive
+            self.map()
+
+    def _map_anew(self, grid: Grid | MovingGrid) -> None:
+        """Go on with a grid, and forget all fits so far."""
+        self.finder.forget()
+        self._mapper = Mapper(grid=grid, settings=unmended(self.steps), steps=self.own.steps, rng=self.seed)
+
+    @property
+    def grid(self) -> Grid | MovingGrid:
+        """All cells that were hit; where things may move, those that still stand."""
+        return self._mapper.grid
+
+    @property
+    def found(self) -> Found:
+        """The shapes found so far, and what else the points are."""
+        return self.last.found
+
+    @property
+    def n_scans_found(self) -> int:
+        """How many scans the shapes were found in."""
+        return self.last.n_scans
 
     def step(self, wheels: ArrayLike = STANDING_WHEELS) -> Step:
         """Turn the wheels for a period, scan, and map: ``move`` and ``map`` together.
@@ -152,14 +179,15 @@ class DriveState:
 
     def _begin_look(self, most: int = MOST_CELLS) -> None:
         """Have the map looked at, or so many of its cells."""
-        cells = self.grid.cells
         self._n_news = 0
-        self.finder.look(self.grid.points()[thin_out(cells, most)], self.n_scans)
+        if not self.finder.busy:
+            self.own.begin()
+        self.finder.look(self._mapper, self.n_scans, most)
 
     def _fetch(self, wait: bool = False) -> bool:
         news = self.finder.news(wait=wait)
         if news is not None:
-            self.found, self.n_scans_found = news.found, news.n_scans
+            self.last = news
             if isinstance(self.grid, MovingGrid):
                 self.grid.give_up(find_left_within(self.grid, self.found))  # the next scan tells what is gone
         return news is not None
@@ -172,7 +200,7 @@ class DriveState:
         looked_at = -1
         while looked_at != len(self.grid):  # what the shapes rule out is given up, and leaves another map
             looked_at = len(self.grid)
-            self.finder.forget()
+            self._map_anew(self.grid)
             self._begin_look(most=looked_at)
             self._fetch(wait=True)
 
@@ -187,7 +215,7 @@ class DriveState:
         self.n_scans += 1
         self.seen_map.add(self.scan, self.lidar.range_min, self.lidar.range_max)
         before = self._cells
-        self.grid.add(self.scan)
+        self._mapper.add(self.scan)
         self._cells = now = self.grid.cells
         new, gone = _only_in(now, before), _only_in(before, now)
         self._n_news += len(new) + len(gone)
@@ -222,17 +250,19 @@ class DriveState:
     @property
     def score(self) -> float:
         """Weighted accuracy of what was found so far, 0 to 1."""
-        return evaluate(self.found, self.world).weighted_accuracy
+        if self._scored[:2] != (self.last, self.world):  # each is compared with itself: looks have no other equality
+            self._scored = (self.last, self.world, evaluate(self.found, self.world).weighted_accuracy)
+        return self._scored[2]
 
     def unseen(self) -> NDArray[np.bool_]:
         """Return which squares of a centimetre may still hide a shape, shape (N, N), as ``SeenMap`` numbers them."""
-        explained = self.seen_map.covered([one.shape for one in self.found], EXPLAINED)
+        explained = self.seen_map.covered(outlines_in(self.found), EXPLAINED)
         return self.seen_map.hiding_places(explained)
 
     def compare(self) -> Table:
         """Return this drive beside the way-points and ``explore`` on the same board, which takes some seconds."""
         self.finish()
-        return compare_runs((self.by_hand(), *automatic_runs(self.world, self.lidar, self.seed)))
+        return compare_runs((self.by_hand(), *automatic_runs(self.world, self.lidar, self.seed, self.steps)))
 
     def by_hand(self) -> Run:
         """Return what came of this drive so far."""

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 import primkit as pk
-from primkit.scene.finder import beside
+from primkit.scene.finder import Beside
 from primkit.scene.keys import wheels_for
 from primkit.scene.state import DriveState
 
@@ -57,7 +57,7 @@ def drive(noise, counts):
     """Drive; print a line for each number of steps, with the 95th percentile as one more number."""
     import resource  # Windows has none
 
-    state = DriveState(pk.random_world(4, rng=7), pk.Lidar(noise_std=noise), executor=beside())
+    state = DriveState(pk.random_world(4, rng=7), pk.Lidar(noise_std=noise), executor=Beside())
     hand, stopped, taken, before = wandering(counts[-1]), None, np.full(counts[-1], np.nan), 0
     for number in range(1, counts[-1] + 1):
         wheels = wheels_for(hand.send(stopped))

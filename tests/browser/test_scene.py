@@ -7,13 +7,16 @@ import pytest
 
 from tests.helpers import WAITS
 
-from .lab import TOKEN, enter, opened
+from .lab import RUN, TOKEN, enter, opened
 
 NAME = "scene"
 CELLS = [
     "import primkit as pk\npk.drive_scene(pk.random_world(4, rng=7))",
     "'a cell that must stay'",
 ]
+COUNT = """import threading
+from primkit.scene.given_back import MADE_BY
+print(len(MADE_BY), "made,", sum(thread.name == "primkit-finder" for thread in threading.enumerate()), "threads")"""
 MOVING = ["import primkit as pk\npk.drive_scene(pk.random_world(4, rng=7), pk.Lidar(noise_std=0.002), moving=True)"]
 FILM = [
     "import numpy as np, primkit as pk\nworld = pk.random_world(4, rng=7)",
@@ -35,6 +38,25 @@ WATCH = """(root) => {
         watch.pressed = 0;
     }).observe(root, { attributes: true, attributeFilter: ["data-scans"] });
     return watch;
+}"""
+
+
+LAPTOP = {"width": 1280, "height": 720}
+# Where the notebook begins and ends in the window.
+IN_SIGHT = """(root) => {
+    const { top, bottom } = root.closest(".jp-WindowedPanel-outer, .jp-Notebook").getBoundingClientRect();
+    return [top, bottom];
+}"""
+# The contrast of a part's letters to what lies behind them, as WCAG 2 has it.
+CONTRAST = r"""(part) => {
+    const rgb = (color) => color.match(/[\d.]+/g).map(Number);
+    let back = part;
+    while (rgb(getComputedStyle(back).backgroundColor)[3] === 0) back = back.parentElement;
+    const light = (color) => rgb(color).slice(0, 3).map((share) => share / 255)
+        .map((share) => (share <= 0.03928 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4))
+        .reduce((sum, share, i) => sum + share * [0.2126, 0.7152, 0.0722][i], 0);
+    const [low, high] = [light(getComputedStyle(part).color), light(getComputedStyle(back).backgroundColor)].sort();
+    return (high + 0.05) / (low + 0.05);
 }"""
 
 
@@ -165,8 +187,9 @@ def test_the_map_grows_and_shapes_get_their_names(seat, screenshots):
     seat.hold(["w", "a"], 45)
     assert "score 0.00" not in seat.score
     label = seat.root.locator("canvas").get_attribute("aria-label")
-    assert any(kind in label for kind in ("circle", "triangle", "rectangle", "pentagon"))
-    assert seat.root.locator("p.says[aria-live=polite]").inner_text()
+    assert "Found: " in label
+    assert ("not certain" in label) == ("not certain" in seat.score), "no name that is not earned"
+    assert "Found so far: " in seat.root.locator("p.says[aria-live=polite]").inner_text()
     seat.button("What have I not seen yet?").click()
     seat.button("Compare: automatic").click()
     table = seat.root.locator("div.automatic table")
@@ -206,7 +229,7 @@ def test_leaving_the_window_stops_the_robot(seat):
 
 
 def test_tab_leaves_to_the_buttons_and_on(seat):
-    for name in ("forward", "left", "back", "right", "Pause"):
+    for name in ("forward", "left", "back", "right", "Pause"):  # in this order, and nothing else between them
         seat.page.keyboard.press("Tab")
         assert seat.button(name).evaluate("(button) => button === document.activeElement")
     before = seat.pose
@@ -265,6 +288,80 @@ def test_without_its_guards_the_same_keys_harm_a_cell(another_lab, folder, keys)
         seat.root.locator("canvas").click()
         seat.root.evaluate(UNGUARD)
         assert harm(another_lab, keys)
+
+
+def test_a_cell_that_is_run_gives_its_scene_the_focus(another_lab, folder):
+    """Nobody has clicked into it, and d d deletes no cell; Escape gives the keys back to the notebook."""
+    page = another_lab
+    (folder / "notebooks" / "focus.ipynb").write_text(notebook())
+    with opened(page, "focus", 0):
+        page.locator(".jp-Notebook .jp-CodeCell .cm-content").first.click()
+        page.evaluate("document.querySelector('.primkit-scene').remove()")
+        page.keyboard.press("Shift+Enter")
+        seat = Seat(page)
+        page.wait_for_function("document.activeElement.className.startsWith('primkit-scene')")
+        assert not harm(page, "dd")
+        assert not seat.root.locator(".cover").is_visible()
+        seat.hold(["w"], 3)
+        page.keyboard.press("Escape")
+        assert seat.root.locator(".cover").is_visible()
+        scans = seat.stands()
+        page.keyboard.press("ArrowDown")
+        assert seat.stands() == scans
+
+
+def test_who_writes_meanwhile_is_not_disturbed(another_lab, folder):
+    """The scene that appears then leaves the focus where it is, and says that it waits for a click."""
+    page, late = another_lab, f"import time\ntime.sleep(2)\n{CELLS[0]}"
+    (folder / "notebooks" / "late.ipynb").write_text(notebook([late, CELLS[1]]))
+    with opened(page, "late", 0):
+        page.locator(".jp-Notebook .jp-CodeCell .cm-content").first.click()
+        page.evaluate("document.querySelector('.primkit-scene').remove()")
+        page.keyboard.press("Shift+Enter")
+        page.locator(".jp-Notebook .jp-CodeCell .cm-content").last.click()
+        seat = Seat(page)
+        page.keyboard.type("dd")
+        assert "dd" in texts_in(page)[-1]
+        assert seat.root.locator(".cover").is_visible()
+
+
+def test_scenes_that_nobody_sees_any_more_are_given_back(another_lab, folder):
+    """After fifteen runs of its cell there is one scene, and no thread that waits."""
+    (folder / "notebooks" / "again.ipynb").write_text(notebook([CELLS[0], COUNT]))
+    with opened(another_lab, "again", 0) as lesson:
+        for _ in range(14):
+            another_lab.evaluate(RUN)
+        lesson.settle()
+        assert another_lab.locator(".jp-OutputArea-output").last.inner_text().startswith("1 made, ")
+        assert int(another_lab.locator(".jp-OutputArea-output").last.inner_text().split()[2]) <= 1
+        assert another_lab.locator(".primkit-scene").count() == 1
+
+
+def test_all_is_in_view_on_a_laptop(seat, screenshots):
+    """Board, score and every button, without scrolling, in a window of 1280 x 720, in both themes, readable."""
+    page = seat.page
+    page.set_viewport_size(LAPTOP)
+    for theme in ("JupyterLab Dark", "JupyterLab Light"):
+        before = seat.picture()
+        page.evaluate("(theme) => window.jupyterapp.commands.execute('apputils:change-theme', { theme })", theme)
+        page.wait_for_function(
+            "(dark) => document.querySelector('.primkit-scene').classList.contains('dark') === dark",
+            arg="Dark" in theme,
+        )
+        page.wait_for_timeout(300)
+        assert seat.picture() != before
+        seat.root.evaluate("(root) => root.scrollIntoView()")
+        low, high = seat.root.evaluate(IN_SIGHT)
+        for part in ("canvas", ".score", *(f"button >> nth={n}" for n in range(8))):
+            box = seat.root.locator(part).bounding_box()
+            assert low <= box["y"], part
+            assert box["y"] + box["height"] <= high, part
+            assert box["x"] + box["width"] <= LAPTOP["width"], part
+        for part in (".score", ".focus", ".says", "button.pause", "summary"):
+            assert seat.root.locator(part).first.evaluate(CONTRAST) >= 4.5, (theme, part)
+        if screenshots:
+            page.screenshot(path=screenshots / f"scene_laptop_{theme.split()[1].lower()}.png")
+    page.set_viewport_size({"width": WIDE, "height": 1000})
 
 
 def test_buttons_drive_with_the_mouse(seat):
@@ -402,6 +499,54 @@ def test_a_thing_is_moved_while_noise_keeps_the_kernel_busy(context, folder, scr
     assert "old" not in seat.score
     if screenshots:
         seat.root.screenshot(path=screenshots / "scene_moving.png")
+    page.close()
+
+
+# One's own code is the robot's eyes.
+
+OWN = {
+    "a right fit_circle": ("def mine(points):\n    return pk.fit_circle(points)", "fit_circle"),
+    "a wrong fit_circle": ("def mine(points):\n    return (*points.mean(axis=0), 0.12)", "fit_circle"),
+    "a wrong segment": ("def mine(points, n):\n    return (points[:, 0] > 0.2).astype(int)", "segment"),
+    "a slow fit_line": (
+        "import time\ndef mine(points):\n    until = time.monotonic() + 1\n    while time.monotonic() < until:\n"
+        "        sum(range(1000))\n    return pk.fit_line(points)",
+        "fit_line",
+    ),
+    "a fit_circle that raises": ("def mine(points):\n    return points / None", "fit_circle"),
+}
+OWN_WORLD = "pk.World([pk.Circle((0.2, 0.12), 0.06), pk.Polygon([(0.1, -0.2), (0.3, -0.2), (0.3, -0.1), (0.1, -0.1)])])"
+TROUBLES = {
+    "a wrong fit_circle": "fit_circle returns a circle that lies on none of its points; the drive goes on.",
+    "a slow fit_line": "fit_line takes ",
+    "a fit_circle that raises": "fit_circle raises TypeError",
+}
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_one_s_own_step_works_while_one_drives(name, context, folder, screenshots, record_property):
+    """Right or wrong, slow or broken: the robot follows the keys, and what is the matter is told."""
+    source, step = OWN[name]
+    show = f"import primkit as pk\n{source}\npk.drive_scene({OWN_WORLD}, steps=pk.Steps({step}=mine))"
+    page = in_voila(context, folder, name.replace(" ", "-"), [show])
+    seat = Seat(page)
+    seat.root.locator("canvas").click()
+    watch = seat.root.evaluate_handle(WATCH)
+    for press in range(PRESSES):
+        page.keyboard.down("wd"[press % 3 // 2])
+        seat.after(seat.scans + 2)
+        page.keyboard.up("wd"[press % 3 // 2])
+        seat.stands()
+    waits = watch.evaluate("(watch) => watch.waits")
+    record_property(WAITS, (name, waits))
+    assert np.median(waits) < UNBEARABLE
+    trouble = seat.root.locator("p.trouble")
+    if name in TROUBLES:
+        trouble.filter(has_text=TROUBLES[name]).wait_for()
+    else:
+        assert trouble.inner_text() == ""
+    if screenshots:
+        seat.root.screenshot(path=screenshots / f"{name.replace(' ', '_')}.png")
     page.close()
 
 

@@ -14,9 +14,10 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
+from primkit.driving.mapper import Mapper
 from primkit.grid import Grid
 from primkit.lidar import Lidar, Scans, scan
-from primkit.pipeline import Memory, find_shapes
+from primkit.pipeline import find_shapes
 from primkit.world import World
 
 from .clock import Spread, no_collection, seconds
@@ -31,9 +32,9 @@ LANES = 0.10  # m from lane to lane
 BODY = 0.037  # m: the e-puck's radius
 FEWEST, MOST = 1800, 2200  # points in the grid
 NOISES = (0.0, 0.002)  # m
-PARTS = ("scan", "grid.add", "find_shapes", "find_shapes with memory")
+PARTS = ("scan", "grid.add", "find_shapes", "Mapper.found")
 STEP = "a whole step"
-LIVE = "a whole step with memory"
+LIVE = "a whole step with a Mapper"
 
 
 def drive(world: World, lidar: Lidar) -> Floats:
@@ -76,13 +77,12 @@ def bench_live(effort: Effort, seed: int) -> Result:
         "live",
         f"While driving: a step every {1000 * Lidar().period:g} ms",
         "ms",
-        "times as fast as without memory",
+        "times as fast as with find_shapes",
         tuple(rows),
         (
             f"Medians (p50) over the steps, with the least and the greatest; p95 is the 95th percentile. {len(steps)} "
             "maps.",
-            '"with memory": find_shapes(..., memory=...) measures only the groups that the scan has changed; both find '
-            "the same. find_shapes includes grid.points().",
+            "A Mapper measures only the groups that the scan has changed; both find the same.",
         ),
     )
 
@@ -92,9 +92,9 @@ def _timed(world: World, lidar: Lidar, most: int, seed: int) -> tuple[NDArray[np
     poses = drive(world, lidar)
     before = scan(world, poses, lidar, rng=seed)
     first, last = _steps_to_time(before, most)
-    grid, memory, noise = Grid(), Memory(), np.random.default_rng(seed)
-    grid.add(before[:first])
-    find_shapes(grid.points(), memory=memory, rng=seed)
+    mapper, noise = Mapper(rng=seed), np.random.default_rng(seed)
+    mapper.add(before[:first])
+    mapper.look(mapper.grid)
     counts: list[int] = []
     rows: list[tuple[float, ...]] = []
     with no_collection():
@@ -102,10 +102,10 @@ def _timed(world: World, lidar: Lidar, most: int, seed: int) -> tuple[NDArray[np
             begun = perf_counter()
             scans = scan(world, poses[step], lidar, rng=noise)
             scanned = perf_counter()
-            grid.add(scans)
+            mapper.add(scans)
             added = perf_counter()
-            rows.append((scanned - begun, added - scanned, *_find_both(grid, memory, seed, swap=step % 2 == 1)))
-            counts.append(len(grid))
+            rows.append((scanned - begun, added - scanned, *_find_both(mapper, seed, swap=step % 2 == 1)))
+            counts.append(len(mapper.grid))
     return np.array(counts), np.array(rows)
 
 
@@ -119,16 +119,16 @@ def _steps_to_time(scans: Scans, most: int) -> tuple[int, int]:
     return (first, last) if last > first else (max(0, len(scans) - most), len(scans))
 
 
-def _find_both(grid: Grid, memory: Memory, seed: int, *, swap: bool) -> tuple[float, float]:
-    """Return the seconds without and with memory; one goes first in one step, the other in the next."""
+def _find_both(mapper: Mapper, seed: int, *, swap: bool) -> tuple[float, float]:
+    """Return the seconds of find_shapes and of the mapper; one goes first in one step, the other in the next."""
 
-    def without() -> object:
-        return find_shapes(grid.points(), rng=seed)
+    def afresh() -> object:
+        return find_shapes(mapper.grid.points(), rng=seed)
 
-    def with_memory() -> object:
-        return find_shapes(grid.points(), memory=memory, rng=seed)
+    def by_mapper() -> object:
+        return mapper.found
 
     if swap:
-        taken = seconds(with_memory)
-        return seconds(without), taken
-    return seconds(without), seconds(with_memory)
+        taken = seconds(by_mapper)
+        return seconds(afresh), taken
+    return seconds(afresh), seconds(by_mapper)
