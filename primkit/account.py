@@ -110,7 +110,7 @@ def things_of(choice: Choice, count_margin: float, account: Account) -> list[Thi
     best = choice.ranked[0] if choice.ranked else None
     if best is None:
         return []
-    if best.figure is None:
+    if best.shape is None:
         wall = _wall_along(choice)
         return [] if wall is None or account.by_chance(wall.points) else [wall]
     found = as_detection(choice)

@@ -63,7 +63,7 @@ class Settings:
     second_opinion : bool
         Split and merge groups where that explains the points better.
     thorough : bool
-        Fit every kind to every group. By default a group that leaves no doubt, see ``glance``, is fitted once: the
+        Fit every kind to every group. By default those alone are fitted that may win, see ``robust.candidates``: the
         same shape, several times faster.
     noise_std : float, optional
         Standard deviation of the sensor's ranges in metres; found from the points when not given, or when they scatter
@@ -259,7 +259,7 @@ def _jointly(
         group = next((group for group in again if group is not None), None)
         if group is not None:
             return group
-        return explained(points, spread, seed, soft=settings.soft, thorough=settings.thorough, kinds=kinds)
+        return explained(points, spread, soft=settings.soft, thorough=settings.thorough, kinds=kinds)
 
     last = next((group.spread for group in reversed(memory.values())), None)  # as the last fits left it
     groups, spread = _explain_all(together, settings, last, explain)

@@ -32,15 +32,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import Floats
+from .cuts import in_company, long_enough, moments_between, scatter_sums, squares_of
 from .evidence import judged
 from .outlines import Outlines
 from .refine import refine_soft
 from .scatter import CELL, SIGMAS
-from .starts import long_enough, moments_between, scatter_sums, squares_of
 
 BEAD_CELLS, BEAD_SPREADS = 3.0, 4.0  # neighbours this near are one bead of the path: then noise makes no detours
 MOST_BEADS = 300  # more are made larger: the tree's work goes with their number squared
-COMPANY, LEAST_COMPANY = 3.0, 3  # a bead with fewer points within three smallest beads is a stray
 AT_AN_END = 0.2  # of the path: there a stray may be its end, and is left out where that closes the path
 CLOSED_GAP = 0.04  # m: nearer ends close an outline: nearly twice as far as neighbours are linked
 PATH_KNOTS = 120  # cuts lie between two of so many places along the path
@@ -129,12 +128,11 @@ def path_through(points: Floats, spread: float) -> Floats | None:
     """Return the longest path from neighbour to neighbour, shape (M, 2), metres; None for fewer than four beads."""
     from scipy.sparse.csgraph import dijkstra, minimum_spanning_tree
 
-    size = _bead_size(spread)
-    beads, alone = _beads(points, size)
+    size, points = _bead_size(spread), points[in_company(points, spread)]
+    beads = _beads(points, size)
     while len(beads) > MOST_BEADS:
         size *= len(beads) / MOST_BEADS
-        beads, alone = _beads(points, size)
-    beads = beads[~alone]
+        beads = _beads(points, size)
     if len(beads) < 4:
         return None
     apart = np.hypot(*np.moveaxis(beads[:, None] - beads, 2, 0))
@@ -152,16 +150,12 @@ def _bead_size(spread: float) -> float:
     return max(BEAD_CELLS * CELL, BEAD_SPREADS * spread)
 
 
-def _beads(points: Floats, size: float) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return the means of the points in squares of this size, shape (M, 2), and which of them are strays, (M,)."""
-    from scipy.spatial import cKDTree
-
+def _beads(points: Floats, size: float) -> Floats:
+    """Return the means of the points in squares of this size, shape (M, 2)."""
     ij = np.floor((points - points.min(axis=0, initial=np.inf)) / size).astype(np.int64)
     square, n = np.unique(ij, axis=0, return_inverse=True, return_counts=True)[1:]
     square = square.ravel().astype(np.intp, copy=False)  # numpy 2.0 returns a column
-    beads = np.column_stack([np.bincount(square, axis, len(n)) / n for axis in points.T])
-    near = cKDTree(points).query_ball_point(beads, max(COMPANY * BEAD_CELLS * CELL, size), return_length=True)
-    return beads, near < LEAST_COMPANY
+    return np.column_stack([np.bincount(square, axis, len(n)) / n for axis in points.T])
 
 
 def _along(points: Floats, path: Floats) -> tuple[Floats, Floats]:

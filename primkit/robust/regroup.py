@@ -20,22 +20,22 @@ extending K-means with efficient estimation of the number of clusters".
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arguments import Floats
 from ..lines import fit_line
 from ..seen import seen_shares
-from ..segmentation import LEAST_GROUP, kmeans
+from ..segmentation import LEAST_GROUP, LINK, kmeans, link
 from ..shapes import KINDS, Polygon, Shape
 from .candidates import candidates, explained_again
 from .choice import Choice
 from .evidence import Candidate, joint_cost
-from .first_fit import at_a_glance, at_another_glance
 from .scatter import NOWHERE, SIGMAS
 
 Explain = Callable[[Floats], "Group"]
@@ -44,7 +44,9 @@ CLOSED = 0.9  # an outline seen on nine tenths of its length is no piece of anot
 WELL_EXPLAINED = 0.9  # share of a group's points on its shape; with fewer, the group may be two
 MOST_ACROSS = 0.45  # m: the paper's largest rectangle is 0.424 m from corner to corner; wider pieces are of two shapes
 HULL_SPREADS, HULL_CELLS = 6.0, 0.002  # the hull runs along the outermost points: others lie up to so much inside [m]
+FINER_LINKS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0)  # a group is cut where it falls apart first, linked so much more finely
 FEW_NEW = 0.1  # share of new points up to which a group is fitted anew from what it was
+FEW_OFF = 0.02  # share of the points by which more may lie beside a group's shape then
 SURE = 30.0  # margin up to which a few points more may change what a group is
 INSIDE_HULL = 0.05  # share of points that may lie inside a hull which should be an outline
 
@@ -94,21 +96,17 @@ def cost_of(groups: Sequence[Group]) -> float:
 def explained(
     points: Floats,
     spread: float,
-    seed: int = 0,
     *,
     soft: bool = True,
     thorough: bool = True,
     kinds: Sequence[str] = KINDS,
 ) -> Group:
-    """Return the points with all their explanations; or, if not to be thorough, with one that a glance is sure of.
+    """Return the points with all their explanations; or, if not to be thorough, with those that may win.
 
     Walls, and those of the kinds that can be there, are explanations.
-    Every group is measured with the same seed, so that a group's result does not depend on the others.
     """
-    best = None if thorough else at_a_glance(points, spread, soft=soft)
-    glance = best is not None and best.kind in kinds
-    ranked = [best] if best is not None and glance else candidates(points, spread, soft=soft, rng=seed, kinds=kinds)
-    return Group(points, ranked, spread, len(points), Choice(points, ranked, spread, seed, soft, glance, kinds))
+    ranked = candidates(points, spread, soft=soft, thorough=thorough, kinds=kinds)
+    return Group(points, ranked, spread, len(points), Choice(points, ranked, spread, soft, thorough, kinds))
 
 
 def grown(old: Group, points: Floats, spread: float, *, soft: bool = True) -> Group | None:
@@ -120,24 +118,14 @@ def grown(old: Group, points: Floats, spread: float, *, soft: bool = True) -> Gr
         None where all explanations should be looked for: many points are new, others are gone, what the group is was
         in doubt, or it is so now.
     """
-    in_doubt = not old.choice.at_a_glance and not _sure(old.ranked)
+    in_doubt = not old.ranked or old.choice.lead < SURE
     if in_doubt or not 1 <= len(points) / old.n_thorough <= 1 + FEW_NEW or not _holds(points, old.points):
         return None
-    if old.choice.at_a_glance:
-        best = at_another_glance(points, old.ranked[0], spread, soft=soft)
-        ranked = [] if best is None else [best]
-    else:
-        ranked = explained_again(points, old.ranked, spread, soft=soft)
-    if not ranked or ranked[0].kind != old.ranked[0].kind or not (old.choice.at_a_glance or _sure(ranked)):
+    ranked = explained_again(points, old.ranked, spread, soft=soft)
+    group = Group(points, ranked, spread, old.n_thorough, replace(old.choice, points=points, ranked=ranked))
+    if not ranked or ranked[0].kind != old.ranked[0].kind or group.choice.lead < SURE:
         return None
-    return Group(points, ranked, spread, old.n_thorough, replace(old.choice, points=points, ranked=ranked))
-
-
-def _sure(ranked: list[Candidate]) -> bool:
-    """Tell whether the best explanation is far ahead of the best one of another kind."""
-    if len(ranked) < 2:
-        return False
-    return next((c.cost for c in ranked if c.kind != ranked[0].kind), float("inf")) - ranked[0].cost >= SURE
+    return group if group.choice.on_it.mean() >= old.choice.on_it.mean() - FEW_OFF else None
 
 
 def _holds(points: Floats, fewer: Floats) -> bool:
@@ -220,25 +208,34 @@ def _gain(parts: tuple[Group, ...], group: Group) -> float:
 
 
 def _halves(group: Group, spread: float, n_shapes: int | None, explain: Explain) -> tuple[Group, ...]:
-    """Return a group as two; nothing when it is too small, or well explained as it is.
-
-    It is cut by K-Means, or along the points inside it, which were seen through the mouth between two shapes.
-    """
+    """Return a group as two; nothing when it is too small, or well explained as it is."""
     if not group.ranked or len(group.points) < 2 * LEAST_GROUP:
         return ()
-    inside = group.points[group.choice.inside]
-    plain = len(inside) == 0 and group.ranked[0].kind != "polygon"
+    plain = not group.choice.inside.any() and group.ranked[0].kind != "polygon"
     if n_shapes is None and plain and _share_on_shape(group, spread) >= WELL_EXPLAINED:
         return ()
-    sides = [kmeans(group.points, 2, rng=0) > 0]
-    if (mouth := fit_line(inside)) is not None:
-        sides.append(mouth.signed_distance(group.points) > 0)
-    ways = [
-        tuple(explain(group.points[side == one]) for one in (False, True))
-        for side in sides
-        if LEAST_GROUP <= np.count_nonzero(side) <= len(side) - LEAST_GROUP
-    ]
+    ways = [tuple(explain(group.points[side == one]) for one in (False, True)) for side in _sides(group)]
     return min(ways, key=cost_of, default=())
+
+
+def _sides(group: Group) -> Iterator[NDArray[np.bool_]]:
+    """Yield ways to cut a group in two: which points lie on one side, shape (N,).
+
+    Where neighbours are farther apart than elsewhere; along the points inside it, which were seen through the mouth
+    between two shapes; and by K-Means.
+    """
+    points = group.points
+    ways = [kmeans(points, 2, rng=0) > 0]
+    if (mouth := fit_line(points[group.choice.inside])) is not None:
+        ways.append(mouth.signed_distance(points) > 0)
+    for finer in FINER_LINKS:
+        labels = link(points, LINK / finer)
+        if labels.max() > 0:
+            ways.append(labels == np.bincount(labels[labels >= 0]).argmax())
+            break
+    for side in ways:
+        if LEAST_GROUP <= np.count_nonzero(side) <= len(side) - LEAST_GROUP:
+            yield side
 
 
 def _share_on_shape(group: Group, spread: float) -> float:
