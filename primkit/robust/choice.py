@@ -22,11 +22,10 @@ from .deviations import Certainty, certainty
 from .evidence import Candidate
 from .lack_of_fit import lack_of_fit
 from .outlines import LEAST_SIDE
-from .scatter import CELL, SIGMAS, noise_of
+from .scatter import SIGMAS, depth_of, noise_of
 
 CERTAIN = 10.0  # a margin of so much is very strong evidence (Kass and Raftery, 1995)
 MOST_ON_IT = 0.9  # share of the points; more off it may be something else
-DEEP_CELLS, DEEP_NOISE = 1.7, 5.0  # inside: farther than cells and noise, times its deviation, bring a point
 MOST_SEEN = 0.75  # share of each side; behind more there may be something else
 
 
@@ -79,7 +78,7 @@ class Choice:
     @cached_property
     def inside(self) -> NDArray[np.bool_]:
         """Which points lie deep inside the chosen shape, shape (N,): no beam gets there, unless it is two."""
-        return self.distance < -(DEEP_CELLS * CELL + DEEP_NOISE * noise_of(self.spread))
+        return self.distance < -depth_of(self.spread)
 
     def certainty(self, points: Floats, scans: Ints | None, noise_std: float) -> Certainty:
         """Return how sure the numbers of the chosen shape are, by points on it and their scans; see ``deviations``."""

@@ -30,7 +30,7 @@ from ..seen import PLACES_PER_SIDE, REACH, places_between, shares_of
 from ..shapes import Circle, Kind, Shape
 from .outlines import Outlines
 from .refine import shares
-from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
+from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, depth_of, scatter
 
 # What is supposed before the points are looked at. Each number of a shape is known to about a centimetre. An outline
 # is seen nearly all around: each metre that was not seen is as unlikely as one in e^40. And an outline that is none of
@@ -38,6 +38,7 @@ from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
 PRIOR_WIDTH = 0.01
 UNSEEN_COST = 80.0
 NAMELESS_COST, NAMELESS_PART_COST = 8.0, 20.0
+INSIDE_COST = 10.0  # of each point deep inside, where no beam gets, on top of being a stray
 WHOLE = 0.9  # share of each side
 
 # How uncertain N even points leave each fitted number, as a variance in units of spread^2 / N: a circle's centre and
@@ -133,7 +134,7 @@ def judged(points: Floats, figure: Figure, spread: float, *, square: bool = Fals
     seen = shares_of(places, points[np.abs(distance) <= SIGMAS * spread])
     length = float(lengths @ np.array(seen))
     cost = _cost(log_likelihood, fitted, len(points), spread) + _length_cost(on_it, length)
-    cost += UNSEEN_COST * float(lengths.sum() - length)
+    cost += UNSEEN_COST * float(lengths.sum() - length) + INSIDE_COST * np.count_nonzero(distance < -depth_of(spread))
     named = isinstance(figure, Circle) or square or (figure.kind != "polygon" and len(lengths) != 4)
     nameless = 0.0 if named else NAMELESS_COST if min(seen) >= WHOLE else NAMELESS_PART_COST
     return Candidate(figure, square, cost + nameless, length, on_it, seen, nameless)

@@ -46,7 +46,7 @@ PATH_KNOTS = 120  # cuts lie between two of so many places along the path
 PIECE_COST = 20.0  # about the price of a side's two numbers, see ``evidence.price``
 DEARER, TIMES_DEARER = 2.0, 4  # where pieces do not close, fewer are tried
 SIDE_CELLS, SIDE_SPREADS = 5.0, 2.0  # no side is shorter
-SHORT, FLAT_TURN = 3.0, np.radians(25)  # of the least side; where two pieces may be one
+SHORT, FLAT_TURN = 4.0, np.radians(35)  # of the least side; where two pieces may be one
 CUT_LOOKS = 2  # strays lead cuts astray: once more without them
 FAR_SPREADS, FAR_CELLS = 9.0, 4.0  # what is farther from the first outline is a stray to the second
 
@@ -107,7 +107,14 @@ def _pruned(points: Floats, outline: Outlines, spread: float, least: float) -> O
 
 def round_order(points: Floats, spread: float) -> Floats | None:
     """Return the points in their order around an outline, counter-clockwise and without strays; None if it is open."""
-    path = path_through(points, spread)
+    near = in_company(points, spread)
+    ordered = _round_path(points, points[near], spread)
+    return _round_path(points, points, spread) if ordered is None and not near.all() else ordered
+
+
+def _round_path(points: Floats, reliable: Floats, spread: float) -> Floats | None:
+    """Return the points along the path through the reliable ones; None where its ends do not meet."""
+    path = path_through(reliable, spread)
     if path is None:
         return None
     n = max(1, int(AT_AN_END * len(path)))
@@ -128,7 +135,7 @@ def path_through(points: Floats, spread: float) -> Floats | None:
     """Return the longest path from neighbour to neighbour, shape (M, 2), metres; None for fewer than four beads."""
     from scipy.sparse.csgraph import dijkstra, minimum_spanning_tree
 
-    size, points = _bead_size(spread), points[in_company(points, spread)]
+    size = _bead_size(spread)
     beads = _beads(points, size)
     while len(beads) > MOST_BEADS:
         size *= len(beads) / MOST_BEADS

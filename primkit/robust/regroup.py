@@ -20,7 +20,7 @@ extending K-means with efficient estimation of the number of clusters".
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import combinations
@@ -214,12 +214,23 @@ def _halves(group: Group, spread: float, n_shapes: int | None, explain: Explain)
     plain = not group.choice.inside.any() and group.ranked[0].kind != "polygon"
     if n_shapes is None and plain and _share_on_shape(group, spread) >= WELL_EXPLAINED:
         return ()
-    ways = [tuple(explain(group.points[side == one]) for one in (False, True)) for side in _sides(group)]
-    return min(ways, key=cost_of, default=())
+    ways = [parts for side in _sides(group, spread) if (parts := _parts(group.points, side, explain))]
+    best = min(ways, key=cost_of, default=())
+    if best and all(part.shape is not None for part in best):  # each point to the shape that it is nearer to
+        far, near = (np.abs(part.shape.signed_distance(group.points)) for part in best if part.shape is not None)
+        best = min(best, _parts(group.points, near < far, explain) or best, key=cost_of)
+    return best
 
 
-def _sides(group: Group) -> Iterator[NDArray[np.bool_]]:
-    """Yield ways to cut a group in two: which points lie on one side, shape (N,).
+def _parts(points: Floats, side: NDArray[np.bool_], explain: Explain) -> tuple[Group, ...]:
+    """Return the points on either side, explained; nothing where they are too few."""
+    if not LEAST_GROUP <= np.count_nonzero(side) <= len(side) - LEAST_GROUP:
+        return ()
+    return explain(points[~side]), explain(points[side])
+
+
+def _sides(group: Group, spread: float) -> list[NDArray[np.bool_]]:
+    """Return ways to cut a group in two: which points lie on one side, shape (N,).
 
     Where neighbours are farther apart than elsewhere; along the points inside it, which were seen through the mouth
     between two shapes; and by K-Means.
@@ -227,15 +238,14 @@ def _sides(group: Group) -> Iterator[NDArray[np.bool_]]:
     points = group.points
     ways = [kmeans(points, 2, rng=0) > 0]
     if (mouth := fit_line(points[group.choice.inside])) is not None:
-        ways.append(mouth.signed_distance(points) > 0)
+        beyond, reach = mouth.signed_distance(points), SIGMAS * spread
+        ways += [beyond > reach, beyond > -reach]  # what lies on it is a side of the one or of the other
     for finer in FINER_LINKS:
         labels = link(points, LINK / finer)
         if labels.max() > 0:
             ways.append(labels == np.bincount(labels[labels >= 0]).argmax())
             break
-    for side in ways:
-        if LEAST_GROUP <= np.count_nonzero(side) <= len(side) - LEAST_GROUP:
-            yield side
+    return ways
 
 
 def _share_on_shape(group: Group, spread: float) -> float:
