@@ -35,7 +35,7 @@ UNSEEN = 0.012  # m: a wider gap between neighbours is a stretch that no beam re
 MOST_CHORDS = 2
 COMPANY, LEAST_COMPANY = 0.009, 3  # m: a point with fewer others as near is a stray, if most have as many
 MOST_IN_COMPANY = 0.5
-DRAWN_IN = 20  # a frame is drawn in by one point in so many
+DRAWN_IN = 50  # a frame is drawn in by one point in so many
 BENT_OUT, BENT_TURNS = 0.01, (0.5, 1.0)  # m and rad: two unseen sides behind one chord
 
 Line = tuple[float, float]  # bearing of the normal, and offset

@@ -38,7 +38,8 @@ from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, depth_of, scatter
 PRIOR_WIDTH = 0.01
 UNSEEN_COST = 80.0
 NAMELESS_COST, NAMELESS_PART_COST = 8.0, 20.0
-INSIDE_COST = 10.0  # of each point deep inside, where no beam gets, on top of being a stray
+# No beam gets inside; so much is each point there that is one too many for the strays that lie outside.
+INSIDE_COST, INSIDE_PER_OUTSIDE = 10.0, 2
 WHOLE = 0.9  # share of each side
 
 # How uncertain N even points leave each fitted number, as a variance in units of spread^2 / N: a circle's centre and
@@ -134,7 +135,7 @@ def judged(points: Floats, figure: Figure, spread: float, *, square: bool = Fals
     seen = shares_of(places, points[np.abs(distance) <= SIGMAS * spread])
     length = float(lengths @ np.array(seen))
     cost = _cost(log_likelihood, fitted, len(points), spread) + _length_cost(on_it, length)
-    cost += UNSEEN_COST * float(lengths.sum() - length) + INSIDE_COST * np.count_nonzero(distance < -depth_of(spread))
+    cost += UNSEEN_COST * float(lengths.sum() - length) + INSIDE_COST * _inside(distance, spread)
     named = isinstance(figure, Circle) or square or (figure.kind != "polygon" and len(lengths) != 4)
     nameless = 0.0 if named else NAMELESS_COST if min(seen) >= WHOLE else NAMELESS_PART_COST
     return Candidate(figure, square, cost + nameless, length, on_it, seen, nameless)
@@ -158,6 +159,13 @@ def joint_cost(candidates: Sequence[Candidate]) -> float:
     n_on, length = sum(c.n_on for c in candidates), sum(c.length for c in candidates)
     together = _length_cost(n_on, length) - sum(_length_cost(c.n_on, c.length) for c in candidates)
     return sum(c.cost for c in candidates) + together
+
+
+def _inside(distance: Floats, spread: float) -> int:
+    """Return how many points lie deep inside an outline beyond those that may be strays, as there are outside."""
+    depth = depth_of(spread)
+    n_inside, n_outside = np.count_nonzero(distance < -depth), np.count_nonzero(distance > depth)
+    return max(0, n_inside - INSIDE_PER_OUTSIDE * n_outside)
 
 
 def _length_along(points: Floats, line: Line, reach: float) -> float:

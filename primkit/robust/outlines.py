@@ -30,7 +30,7 @@ from ..arguments import Floats
 from ..shapes import KINDS, NEARLY_RIGHT, Kind, Polygon
 
 # What a board can hold, and a sensor can tell: sides of at least 1.5 cm, corners that bend by 15 to 160 degrees.
-LEAST_SIDE = 0.015
+LEAST_SIDE, LEAST_PLANK = 0.015, 0.004
 LEAST_TURN, MOST_TURN = np.radians(15), np.radians(160)
 LEAST_BEND, MOST_BEND = np.radians(8), np.radians(172)  # the same for outlines without a name
 QUARTERS = np.arange(4) * (np.pi / 2)  # the bearings of a rectangle's normals, from its first
@@ -104,12 +104,16 @@ class Outlines:
         return self._spans
 
     def sound(self) -> NDArray[np.bool_]:
-        """Tell which outlines are closed and convex, with sides and corners that a sensor can tell, shape (C,)."""
+        """Tell which outlines are closed and convex, with sides and corners that a sensor can tell, shape (C,).
+
+        A rectangle may be thinner, where its long sides tell how it lies.
+        """
         turn = np.mod(_after(self.angles) - self.angles, 2 * np.pi)
         begin, end = self.spans()
         once_round = np.abs(turn.sum(axis=1) - 2 * np.pi) < 1e-6
         bends = ((turn >= LEAST_TURN) & (turn <= MOST_TURN)).all(axis=1)
-        return once_round & bends & (end - begin >= LEAST_SIDE).all(axis=1)
+        plank = turn.shape[1] == 4 and (np.abs(turn - np.pi / 2) <= NEARLY_RIGHT).all(axis=1, keepdims=True)
+        return once_round & bends & (end - begin >= np.where(plank, LEAST_PLANK, LEAST_SIDE)).all(axis=1)
 
     def closes(self, least: float) -> NDArray[np.bool_]:
         """Tell which outlines run round once, convex or not, with corners that bend and no side below ``least`` [m]."""
