@@ -165,7 +165,7 @@ def _inside(distance: Floats, spread: float) -> int:
     """Return how many points lie deep inside an outline beyond those that may be strays, as there are outside."""
     depth = depth_of(spread)
     n_inside, n_outside = np.count_nonzero(distance < -depth), np.count_nonzero(distance > depth)
-    return max(0, n_inside - INSIDE_PER_OUTSIDE * n_outside)
+    return max(0, int(n_inside - INSIDE_PER_OUTSIDE * n_outside))
 
 
 def _length_along(points: Floats, line: Line, reach: float) -> float:
