@@ -45,6 +45,7 @@ MOST_RADIUS = 0.25  # m: a larger circle than a quarter of the board is a wall
 LEAST_ARC = np.radians(60)  # a shorter arc fits a wide range of circles
 CIRCLE_ROUNDS = 10  # after three or four, hardly a point changes its weight
 SETTLED_MOVE = 1e-7  # m: what moves by less has settled; the next round moves it by a small part of that
+MOST_POINTS = 5000  # of more, an even part is explained, so that the work is bounded
 ENOUGH_POINTS = 400  # more do not make a first fit much better, and cost time
 STARTS_KEPT = 5  # of the guesses, those closest to the points are refined
 WIDER = 0.005  # m: guesses are judged with a longer reach than fits, because they still lie beside the points
@@ -88,10 +89,11 @@ def candidates(
     list of Candidate
         A wall, a circle, and polygons of three to five sides, as far as each can be fitted, and where the best of
         them does not fit, the best outline of any straight pieces; empty for fewer than eight different points. Those
-        that come near the best are fitted to the last digit.
+        that come near the best are fitted to the last digit. Of very many points, an even part is explained.
     """
     if len(np.unique(points[:, 0] + 1j * points[:, 1])) < LEAST_POINTS:
         return []
+    points = points[:: -(-len(points) // MOST_POINTS)]
     middle = points.mean(axis=0)
     local = points - middle  # digits are not lost far from the origin
     fits = list(_fits(local, spread, thorough, ("wall", *kinds)))

@@ -71,9 +71,9 @@ def in_company(points: Floats, spread: float) -> NDArray[np.bool_]:
     """Tell which points have others near them, as on an outline, and are no strays, shape (N,); all if few do."""
     from scipy.spatial import cKDTree
 
-    if len(points) == 0:
-        return np.empty(0, dtype=bool)
-    near = cKDTree(points).query_ball_point(points, COMPANY + spread, return_length=True) > LEAST_COMPANY
+    if len(points) <= LEAST_COMPANY:
+        return np.ones(len(points), dtype=bool)
+    near = cKDTree(points).query(points, LEAST_COMPANY + 1)[0][:, -1] <= COMPANY + spread  # itself is the first
     return near if near.mean() >= MOST_IN_COMPANY else np.ones(len(points), dtype=bool)
 
 

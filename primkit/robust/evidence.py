@@ -38,8 +38,9 @@ from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, depth_of, scatter
 PRIOR_WIDTH = 0.01
 UNSEEN_COST = 80.0
 NAMELESS_COST, NAMELESS_PART_COST = 8.0, 20.0
-# No beam gets inside; so much is each point there that is one too many for the strays that lie outside.
-INSIDE_COST, INSIDE_PER_OUTSIDE = 10.0, 2
+# No beam gets inside: the cost of each point there beyond those that lie outside, which are strays; more are not seen
+# through a mouth.
+INSIDE_COST, MOST_INSIDE = 10.0, 5
 WHOLE = 0.9  # share of each side
 
 # How uncertain N even points leave each fitted number, as a variance in units of spread^2 / N: a circle's centre and
@@ -162,10 +163,10 @@ def joint_cost(candidates: Sequence[Candidate]) -> float:
 
 
 def _inside(distance: Floats, spread: float) -> int:
-    """Return how many points lie deep inside an outline beyond those that may be strays, as there are outside."""
+    """Return how many points deep inside an outline count: not those that may be strays, as there are outside."""
     depth = depth_of(spread)
     n_inside, n_outside = np.count_nonzero(distance < -depth), np.count_nonzero(distance > depth)
-    return max(0, int(n_inside - INSIDE_PER_OUTSIDE * n_outside))
+    return int(np.clip(n_inside - n_outside, 0, MOST_INSIDE))
 
 
 def _length_along(points: Floats, line: Line, reach: float) -> float:

@@ -21,7 +21,7 @@ extending K-means with efficient estimation of the number of clusters".
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import combinations
 
@@ -39,6 +39,9 @@ from .evidence import Candidate, joint_cost
 from .scatter import NOWHERE, SIGMAS
 
 Explain = Callable[[Floats], "Group"]
+
+# A second opinion explains at most so many points, and each try counts as so many more: about a second's work.
+MOST_WORK, WORK_OF_A_TRY = 50_000, 250
 
 CLOSED = 0.9  # an outline seen on nine tenths of its length is no piece of another
 WELL_EXPLAINED = 0.9  # share of a group's points on its shape; with fewer, the group may be two
@@ -67,6 +70,11 @@ class Group:
         return self.ranked[0].shape if self.ranked else None
 
     @cached_property
+    def box(self) -> tuple[Floats, Floats]:
+        """The lower left and the upper right of the box around the points, metres."""
+        return self.points.min(axis=0), self.points.max(axis=0)
+
+    @cached_property
     def closed(self) -> bool:
         """Whether the best explanation's outline was seen nearly all around."""
         shape = self.shape
@@ -82,9 +90,35 @@ class Group:
 class _Tried:
     """What was tried: how groups would split, what pairs would merge into, and by how much a group won."""
 
-    halves: dict[Group, tuple[Group, ...]]
-    unions: dict[tuple[Group, Group], Group | None]
-    won_by: dict[Group, float]
+    halves: dict[Group, tuple[Group, ...]] = field(default_factory=dict)
+    unions: dict[tuple[Group, Group], Group | None] = field(default_factory=dict)
+    won_by: dict[Group, float] = field(default_factory=dict)
+
+
+@dataclass
+class Opinion:
+    """Explains points, and knows how much work that was: beyond a bound, no more is tried.
+
+    Parameters
+    ----------
+    explain : callable
+        Explains (N, 2) points as a group.
+    work : int
+        The points that were explained, and some more for each try.
+    """
+
+    explain: Explain
+    work: int = 0
+
+    def __call__(self, points: Floats) -> Group:
+        """Explain points, shape (N, 2), metres."""
+        self.work += len(points) + WORK_OF_A_TRY
+        return self.explain(points)
+
+    @property
+    def bounded(self) -> bool:
+        """Whether the bound was reached."""
+        return self.work > MOST_WORK
 
 
 def cost_of(groups: Sequence[Group]) -> float:
@@ -139,9 +173,9 @@ def regrouped(
     spread: float,
     n_shapes: int | None = None,
     *,
-    explain: Explain | None = None,
+    explain: Opinion | None = None,
 ) -> tuple[list[Group], list[float]]:
-    """Split and merge groups as long as that explains the points better.
+    """Split and merge groups as long as that explains the points better, within a bound of work.
 
     Parameters
     ----------
@@ -151,8 +185,8 @@ def regrouped(
         Standard deviation of the points from the outlines, metres.
     n_shapes : int, optional
         The number of groups to end with, when it is known.
-    explain : callable, optional
-        Explains (N, 2) points as a group; ``explained`` by default.
+    explain : Opinion, optional
+        Explains (N, 2) points as a group; by ``explained`` if it is not given.
 
     Returns
     -------
@@ -162,8 +196,7 @@ def regrouped(
         For each group, how much better it explains the points than the best grouping in which it is split or
         merged with a neighbour: twice the logarithm of the Bayes factor; infinite when none was in question.
     """
-    explain = explain or partial(explained, spread=spread)
-    tried = _Tried({}, {}, {})
+    explain, tried = explain or Opinion(partial(explained, spread=spread)), _Tried()
     groups = list(groups)
     if n_shapes is None or len(groups) < n_shapes:
         groups = _split_all(groups, spread, n_shapes, explain, tried)
@@ -185,14 +218,14 @@ def _margin(group: Group, groups: list[Group], tried: _Tried) -> float:
 
 
 def _split_all(
-    groups: list[Group], spread: float, n_shapes: int | None, explain: Explain, tried: _Tried
+    groups: list[Group], spread: float, n_shapes: int | None, explain: Opinion, tried: _Tried
 ) -> list[Group]:
     """Split the group that gains most by it, again and again."""
     limit = 0.0 if n_shapes is None else np.inf
     while n_shapes is None or len(groups) < n_shapes:
         for g in groups:
             if g not in tried.halves:
-                tried.halves[g] = _halves(g, spread, n_shapes, explain)
+                tried.halves[g] = () if explain.bounded else _halves(g, spread, n_shapes, explain)
         best = min(groups, key=lambda g: _gain(tried.halves[g], g), default=None)
         if best is None or not _gain(tried.halves[best], best) < limit:
             break
@@ -256,14 +289,14 @@ def _share_on_shape(group: Group, spread: float) -> float:
 
 
 def _merge_all(
-    groups: list[Group], spread: float, n_shapes: int | None, explain: Explain, tried: _Tried
+    groups: list[Group], spread: float, n_shapes: int | None, explain: Opinion, tried: _Tried
 ) -> list[Group]:
     """Merge the two groups that gain most by it, again and again."""
     while len(groups) > (n_shapes or 1):
         best, best_gain = None, 0.0 if n_shapes is None else np.inf
         for a, b in combinations(groups, 2):
             if (a, b) not in tried.unions:
-                plausible = n_shapes is not None or _may_be_one(a, b, spread)
+                plausible = not explain.bounded and (n_shapes is not None or _may_be_one(a, b, spread))
                 tried.unions[a, b] = explain(np.vstack([a.points, b.points])) if plausible else None
             one = tried.unions[a, b]
             gain = cost_of([one]) - cost_of([a, b]) if one is not None and one.ranked else np.inf
@@ -284,7 +317,7 @@ def _may_be_one(a: Group, b: Group, spread: float) -> bool:
     """
     import shapely
 
-    if a.closed and b.closed:
+    if (a.closed and b.closed) or _apart(a, b) > MOST_ACROSS:
         return False
     points = np.vstack([a.points, b.points])
     hull = shapely.MultiPoint(points).convex_hull
@@ -292,3 +325,9 @@ def _may_be_one(a: Group, b: Group, spread: float) -> bool:
         return False
     depth = shapely.distance(hull.boundary, shapely.points(points))
     return bool(np.mean(depth > HULL_SPREADS * spread + HULL_CELLS) <= INSIDE_HULL)
+
+
+def _apart(a: Group, b: Group) -> float:
+    """Return how far the boxes around two groups are apart, metres."""
+    (low, high), (other_low, other_high) = a.box, b.box
+    return float(np.max(np.maximum(low - other_high, other_low - high)))
