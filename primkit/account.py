@@ -72,7 +72,7 @@ class Account:
         area = float(np.prod(np.ptp(local, axis=0) + CHANCE_AROUND))
         return cls(points, local, frame, n_unlinked / area, scans)
 
-    def closed(self, things: Iterable[Thing]) -> Found:
+    def closed(self, things: Iterable[Thing], bounded: bool) -> Found:
         """Return everything in metres, from left to right, each point once, and the strays that are left."""
         every = _as_numbers(self.local)
         first_there = np.searchsorted(every, every)  # points at one and the same place share their fate
@@ -87,7 +87,7 @@ class Account:
         shapes = sorted((t for t in settled if isinstance(t, Detection)), key=lambda d: tuple(d.shape.centroid))
         walls = sorted((t for t in settled if isinstance(t, Wall)), key=lambda w: tuple(w.start))
         others = sorted((t for t in settled if isinstance(t, Other)), key=lambda o: tuple(o.points.mean(axis=0)))
-        return Found(shapes, walls, others, self.points[left], CELL * self.frame.unit)
+        return Found(shapes, walls, others, self.points[left], CELL * self.frame.unit, bounded)
 
     def by_chance(self, points: Floats) -> bool:
         """Tell whether so many strays make as many points at one place by chance."""
@@ -110,7 +110,7 @@ def things_of(choice: Choice, count_margin: float, account: Account) -> list[Thi
     best = choice.ranked[0] if choice.ranked else None
     if best is None:
         return []
-    if best.figure is None:
+    if best.shape is None:
         wall = _wall_along(choice)
         return [] if wall is None or account.by_chance(wall.points) else [wall]
     found = as_detection(choice)

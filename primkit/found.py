@@ -29,13 +29,15 @@ from .table import Table, count
 
 MOST_ROWS = 20  # so many shapes, walls and other things are told one by one
 SUPPOSED = "In brackets: supposed, not measured."
+BOUNDED = "Not all was tried: there is a bound to the work, and it was reached."
 
 
 class Found(list[Detection]):
     """A list of detections, from left to right, and what else the points are: the sum of all is all points.
 
     ``walls`` are straight pieces, ``others`` things that are none of the kinds, ``strays``, shape (N, 2), metres, the
-    points that lie on nothing; ``resolution`` is the side of the cells that all of them lie on, metres.
+    points that lie on nothing; ``resolution`` is the side of the cells that all of them lie on, metres. ``bounded``
+    tells whether there were so many points, or things in doubt, that not all was tried: there may be more to tell.
 
     >>> Found([]) == [], Found([])[:1]
     (True, no shapes found)
@@ -48,11 +50,12 @@ class Found(list[Detection]):
         others: Iterable[Other] = (),
         strays: Floats | None = None,
         resolution: float = CELL,
+        bounded: bool = False,
     ) -> None:
         super().__init__(shapes)
         self.walls, self.others = tuple(walls), tuple(others)
         self.strays = np.empty((0, 2)) if strays is None else strays
-        self.resolution = resolution
+        self.resolution, self.bounded = resolution, bounded
 
     def table(self) -> Table:
         """Return what was found as a table: a row for each shape, with its index, each wall and each other thing."""
@@ -62,6 +65,7 @@ class Found(list[Detection]):
         rows = [(index, *_cells(one, self.resolution)) for index, one in told[:MOST_ROWS]]
         notes = [SUPPOSED] if any("(" in row[3] for row in rows) else []
         notes += [f"And {len(told) - MOST_ROWS} more."] if len(told) > MOST_ROWS else []
+        notes += [BOUNDED] if self.bounded else []
         return Table(FOUND_HEADER, rows, self.title(), notes)
 
     def title(self) -> str:
@@ -80,7 +84,7 @@ class Found(list[Detection]):
         return ", ".join(rest + ([count(len(self.strays), "stray")] if len(self.strays) else []))
 
     def __repr__(self) -> str:
-        return str(self.table()).replace("\n\n", "\n") if self else self.title()
+        return str(self.table()).replace("\n\n", "\n") if self or self.bounded else self.title()
 
     def _repr_html_(self) -> str:
         return self.table()._repr_html_() if self or self.walls or self.others else f"<p>{self!r}</p>"
@@ -91,7 +95,7 @@ class Found(list[Detection]):
     def __getitem__(self, which: slice) -> Found: ...
     def __getitem__(self, which: SupportsIndex | slice) -> Detection | Found:
         if isinstance(which, slice):
-            return Found(super().__getitem__(which), resolution=self.resolution)
+            return Found(super().__getitem__(which), resolution=self.resolution, bounded=self.bounded)
         return super().__getitem__(which)
 
 

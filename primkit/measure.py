@@ -166,7 +166,7 @@ class Detection:
         """How much better this shape explains the points than the best rival: another kind, or an outline of none.
 
         Twice the logarithm of the Bayes factor; above 10 is very strong (Kass and Raftery, 1995). Infinite without a
-        rival; NaN from ``PAPER``, which does not ask. Where the shape was beyond doubt at a glance, its rivals are
+        rival; NaN from ``PAPER``, which does not ask. Rivals that could not win are
         fitted now, when the margin is asked for: some 10 ms, once.
         """
         return float("nan") if self.choice is None else self.choice.margin
@@ -259,7 +259,7 @@ def measure_shape(
     spread: float,
     *,
     resolution: float = CELL,
-    rng: int | np.random.Generator | None = None,
+    rng: int | np.random.Generator | None = None,  # noqa: ARG001
 ) -> Detection | None:
     """Return the shape that explains the points of one cluster best.
 
@@ -294,7 +294,7 @@ def measure_shape(
     points, spread = as_points(points), as_positive(spread, "spread", zero=True)
     frame = Frame.of(points, as_positive(resolution, "resolution"))
     local, spread = frame.local(points), max(LEAST_SPREAD, spread / frame.unit)
-    found = as_detection(Choice(local, candidates(local, spread, rng=rng), spread))
+    found = as_detection(Choice(local, candidates(local, spread), spread))
     return None if found is None else replace(found.in_metres(frame), noise_std=noise_of(spread))
 
 

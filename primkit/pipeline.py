@@ -31,7 +31,8 @@ from .found import Found
 from .grid import Grid
 from .measure import CELL, Detection, Frame, Thing, detection
 from .paper import CIRCLE_TRIALS, LINE_TRIALS, ON_LINE, one_start_kmeans, shape_as_published
-from .robust.regroup import Group, explained, grown, regrouped
+from .robust.candidates import MOST_POINTS
+from .robust.regroup import Group, Opinion, explained, grown, regrouped
 from .robust.scatter import LEAST_SPREAD, SIGMAS, noise_of, spread_across, spread_from_median, spread_of
 from .segmentation import Grouping, check_count, count_by_silhouette, segment
 from .shapes import KINDS, Kind
@@ -62,7 +63,7 @@ class Settings:
     second_opinion : bool
         Split and merge groups where that explains the points better.
     thorough : bool
-        Fit every kind to every group. By default a group that leaves no doubt, see ``glance``, is fitted once: the
+        Fit every kind to every group. By default those alone are fitted that may win, see ``robust.candidates``: the
         same shape, several times faster.
     noise_std : float, optional
         Standard deviation of the sensor's ranges in metres; found from the points when not given, or when they scatter
@@ -200,19 +201,19 @@ def find_again(
     steps = steps.within(frame)
     if settings.noise_std is not None:
         settings = replace(settings, noise_std=settings.noise_std / frame.unit)
-    found: list[Thing] = []
+    found, bounded = list[Thing](), False
     if settings.method == "published":
         found += _as_published(together, settings, steps, measure_rng)
     else:
         together = [points for points in together if not account.by_chance(points)]  # strays, not to be explained
-        groups, margins = _jointly(together, n_shapes, settings, kinds, warm, measure_rng)
+        groups, margins, bounded = _jointly(together, n_shapes, settings, kinds, warm, measure_rng)
         for group, margin in zip(groups, margins, strict=True):
             for thing in things_of(group.choice, margin, account):
                 if isinstance(thing, Detection):
                     thing = replace(thing, noise_std=min(settings.noise_std or 0.0, noise_of(group.spread)))
                 own = steps.remeasured(thing, SIGMAS * group.spread) if isinstance(thing, Detection) else thing
                 found += [] if own is None else [own]
-    return account.closed(found)
+    return account.closed(found, bounded)
 
 
 def _known(kinds: Sequence[Kind] | Kind | None) -> tuple[Kind, ...]:
@@ -252,8 +253,8 @@ def _jointly(
     kinds: tuple[Kind, ...],
     warm: WarmStarts,
     rng: np.random.Generator,
-) -> tuple[list[Group], list[float]]:
-    """Explain each group, and ask for a second opinion on the groups: the default way."""
+) -> tuple[list[Group], list[float], bool]:
+    """Explain each group, and ask for a second opinion on the groups: the default way; tell if a bound was reached."""
     seed = int(rng.integers(2**63))
     how = (seed, settings.soft, settings.thorough, kinds)
     used: WarmStarts = {}
@@ -270,16 +271,16 @@ def _jointly(
         group = next((group for group in again if group is not None), None)
         if group is not None:
             return group
-        return explained(points, spread, seed, soft=settings.soft, thorough=settings.thorough, kinds=kinds)
+        return explained(points, spread, soft=settings.soft, thorough=settings.thorough, kinds=kinds)
 
     last = next((group.spread for group in reversed(warm.values())), None)  # as the last fits left it
     groups, spread = _explain_all(together, settings, last, explain)
-    margins = [float("nan")] * len(groups)
+    margins, opinion = [float("nan")] * len(groups), Opinion(partial(explain, spread=spread))
     if settings.second_opinion or n_shapes is not None:
-        groups, margins = regrouped(groups, spread, n_shapes, explain=partial(explain, spread=spread))
+        groups, margins = regrouped(groups, spread, n_shapes, explain=opinion)
     warm.clear()  # what was not used now will not come again: a map only grows
     warm.update(used)
-    return groups, margins
+    return groups, margins, opinion.bounded or any(len(points) > MOST_POINTS for points in together)
 
 
 def _explain_all(

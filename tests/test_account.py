@@ -184,3 +184,25 @@ def test_a_room_is_large_and_has_room_to_stand_in(width, height, walls):
     box = pk.Polygon([(0, 0), (width, 0), (width, height), (0, height)])
     found = pk.find_shapes(box.moved((-0.3, 0.1), 0.3).outline(1500), rng=0)
     assert (len(found), len(found.walls)) == ((0, walls) if walls else (1, 0))
+
+
+def test_the_work_is_bounded_and_the_result_says_so(monkeypatch):
+    """However many points there are, so many are explained, the same ones each time."""
+    from primkit.robust import candidates, regroup
+
+    judged = []
+    real = candidates.judged
+    monkeypatch.setattr(
+        candidates, "judged", lambda points, *a, **k: judged.append(len(points)) or real(points, *a, **k)
+    )
+    points = np.random.default_rng(0).uniform(-0.2, 0.2, (12_000, 2))
+    found, again = (pk.find_shapes(points, rng=0) for _ in range(2))
+    assert found.bounded
+    assert max(judged) <= candidates.MOST_POINTS
+    assert "Not all was tried: there is a bound to the work, and it was reached." in repr(found)
+    np.testing.assert_array_equal(in_order(accounted(found)), in_order(points))
+    assert [repr(one) for one in found] == [repr(one) for one in again]
+    board = seen_on(pk.random_world(4, style="free", rng=1), spurious=0.2)
+    assert not pk.find_shapes(board, rng=0).bounded
+    monkeypatch.setattr(regroup, "MOST_WORK", 0)
+    assert pk.find_shapes(board, rng=0).bounded

@@ -15,7 +15,6 @@ from primkit.robust.evidence import (
     _length_cost,
     joint_cost,
     judged,
-    judged_wall,
 )
 from primkit.robust.scatter import LEAST_SPREAD, NOWHERE, spread_across
 from tests.test_outlines import outline_of
@@ -79,9 +78,10 @@ def test_two_halves_together_cost_what_the_whole_costs():
 
 def test_a_wall_costs_its_unseen_back():
     points = np.column_stack([np.linspace(0, 0.3, 80), np.zeros(80)])
+    stretched = points * (4 / 3, 1)
     line = pk.fit_line(points)
-    assert judged_wall(points, line, 0.3, 0.001).figure is None
-    longer = judged_wall(points, line, 0.4, 0.001).cost - judged_wall(points, line, 0.3, 0.001).cost
+    assert judged(points, line, 0.001).shape is None
+    longer = judged(stretched, line, 0.001).cost - judged(points, line, 0.001).cost
     assert longer == pytest.approx(UNSEEN_COST * 0.1 + 2 * 80 * np.log(4 / 3), rel=1e-3)
 
 
@@ -96,5 +96,5 @@ def test_under_much_noise_no_kind_is_preferred(kind):
             if shape.perimeter < 0.45:
                 break
         points = seen_by_beams(shape, 140, 0.01, rng)
-        named[candidates(points, spread_across(0.01), rng=0)[0].kind] += 1
+        named[candidates(points, spread_across(0.01))[0].kind] += 1
     assert named[kind] >= 24, named

@@ -6,9 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import primkit as pk
-from primkit.robust.guess import one_side_more
 from primkit.robust.outlines import Outlines
-from primkit.robust.refine import refine_hard, refine_soft, refit, shares, truncated_cost
+from primkit.robust.refine import one_side_more, refine_hard, refine_soft, refit, shares, truncated_cost
 from tests.test_outlines import outline_of
 
 TENTH_OF_A_CELL = 1e-4  # m: shares blur a corner a little even where the points are exact

@@ -1,49 +1,64 @@
-"""Explain: every shape that could have caused a cluster's points, and how well each explains them.
+"""Candidates: every shape that could have caused the points of a cluster, the best explanation first.
 
-Circle or polygon, and how many sides? Each candidate is fitted as well as it can be, and the evidence ranks them.
+    1 start   the points in order, cut into their straightest pieces; a circle; chords over what was not seen
+    2 bound   how well the pieces fit says about the least that each kind can cost
+    3 fit     kind by kind, the most promising first: give each point to its side, refit all sides, repeat
+    4 polish  share points between sides, for those that come near the best
+    5 free    any straight pieces, where the best does not fit
+
+Most outlines leave no doubt. Then it is a waste to fit every kind: when the best is ahead of the bounds of all others,
+it has won. This is "branch and bound". The bounds are no theorem: a shape must be well ahead of them.
 
 In:  points of one cluster, shape (N, 2), metres, and how far points spread from outlines.
 Out: ``Candidate`` explanations, the best first.
 
->>> ranked = candidates(Circle((0, 0), 0.05).outline(60), spread=0.0005, rng=0)
+>>> ranked = candidates(Circle((0, 0), 0.05).outline(60), spread=0.0005)
 >>> ranked[0].kind, ranked[0].cost < ranked[1].cost
 ('circle', True)
+
+Sources: 1 Bellman (1961); 2 Land and Doig (1960), "An automatic method of solving discrete programming problems"; 3
+Isack and Boykov (2012); 4 Dempster, Laird and Rubin (1977).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arguments import Floats, as_rng
-from ..circles import find_circle, nearer_circle
-from ..lines import Line
+from ..arguments import Floats
+from ..circles import fit_circle, nearer_circle
+from ..lines import Line, fit_line
 from ..seen import REACH
 from ..shapes import KINDS, Circle
-from .evidence import Candidate, judged, judged_wall
+from .cuts import UNSEEN, Cut, best_cuts, by_bearing, chords, frames, in_company, outlines_with
+from .evidence import NAMELESS_COST, OF_CIRCLE, OF_FREE_SIDES, OF_SQUARE, OF_WALL, Candidate, Figure, judged, price
 from .free import free_outline
-from .guess import guess_outlines, guess_rectangles, line_guesses, one_side_more, ransac_lines
 from .lack_of_fit import lack_of_fit
-from .outlines import Outlines, joined
-from .refine import refine_hard, refine_soft, truncated_cost
-from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
+from .outlines import QUARTERS, Outlines, joined
+from .refine import one_side_more, refine_hard, refine_soft, truncated_cost
+from .scatter import GHOSTS, LEAST_SPREAD, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
 
 LEAST_POINTS = 8  # fewer fix nothing: a pentagon alone has ten numbers
 MOST_RADIUS = 0.25  # m: a larger circle than a quarter of the board is a wall
 LEAST_ARC = np.radians(60)  # a shorter arc fits a wide range of circles
-CANDIDATE_CIRCLE_TRIALS = 100  # with four fifths of the points on the circle, one sample in two is clean
 CIRCLE_ROUNDS = 10  # after three or four, hardly a point changes its weight
 SETTLED_MOVE = 1e-7  # m: what moves by less has settled; the next round moves it by a small part of that
-ENOUGH_POINTS = 200  # more do not make a first fit much better, and cost time
+MOST_POINTS = 5000  # of more, an even part is explained, so that the work is bounded
+ENOUGH_POINTS = 400  # more do not make a first fit much better, and cost time
 STARTS_KEPT = 5  # of the guesses, those closest to the points are refined
 WIDER = 0.005  # m: guesses are judged with a longer reach than fits, because they still lie beside the points
 # m: beyond this spread a short side drowns in its neighbours' points when each is given to one side alone
 BLURRED = 0.002
 # A candidate that is this much worse (in cost) before the last polish is not going to win by it.
-CONTENDER = 100.0
+CONTENDER = 40.0
+AHEAD = 10.0  # by so much a shape must be ahead of a bound: very strong evidence (Kass and Raftery, 1995)
 FITS, NEARLY_ALL = 10.0, 0.9  # lack of fit down to which a shape fits; share of the points, and of each side
+LOOKS, NEARLY_ALL_POINTS = 3, 0.97  # strays lead cuts astray: once more without them, until so many points lie on it
+BEGAN_BADLY = 25.0  # a fit that costs so much more than it could
+RIVAL = 200.0  # and no rival comes near any more
+CIRCLE_LOOKS, KEPT_NEAREST = 2, 0.8  # share of the points that a circle's start is fitted to
 
 
 def candidates(
@@ -51,10 +66,10 @@ def candidates(
     spread: float,
     *,
     soft: bool = True,
-    rng: int | np.random.Generator | None = None,
+    thorough: bool = True,
     kinds: Sequence[str] = KINDS,
 ) -> list[Candidate]:
-    """Return every explanation of a cluster's points, the best first.
+    """Return explanations of a cluster's points, the best first.
 
     Parameters
     ----------
@@ -64,8 +79,8 @@ def candidates(
         Standard deviation of the points from the outline, metres.
     soft : bool
         Share points between sides in the last polish, as ``refine.refine_soft`` does.
-    rng : int or numpy.random.Generator, optional
-        Seed or generator.
+    thorough : bool
+        Fit every kind, and not only those that may win.
     kinds : sequence of str
         The kinds that can be there.
 
@@ -74,23 +89,162 @@ def candidates(
     list of Candidate
         A wall, a circle, and polygons of three to five sides, as far as each can be fitted, and where the best of
         them does not fit, the best outline of any straight pieces; empty for fewer than eight different points. Those
-        that come near the best are fitted to the last digit.
+        that come near the best are fitted to the last digit. Of very many points, an even part is explained.
     """
-    if len(np.unique(points, axis=0)) < LEAST_POINTS:
+    if len(np.unique(points[:, 0] + 1j * points[:, 1])) < LEAST_POINTS:
         return []
+    points = points[:: -(-len(points) // MOST_POINTS)]
     middle = points.mean(axis=0)
     local = points - middle  # digits are not lost far from the origin
-    possible = ("wall", *kinds)
-    rough = [c for c in _rough(local, spread, as_rng(rng)) if c.kind in possible]
-    waiting = sorted(rough, key=lambda c: c.cost)
-    done: list[Candidate] = []
+    fits = list(_fits(local, spread, thorough, ("wall", *kinds)))
+    if len(fits) == 1:  # it has no rival, and is judged once, when it is polished
+        waiting = [Candidate(*fits[0], cost=0.0, length=0.0, n_on=0.0)]
+    else:
+        waiting = [judged(local, figure, spread, square=square) for figure, square in fits]
+    waiting.sort(key=lambda c: c.cost)
+    done = list[Candidate]()
     while waiting and waiting[0].cost <= min((c.cost for c in done), default=np.inf) + CONTENDER:
-        polished = _polished(local, waiting.pop(0), spread, soft)
-        done += [] if polished is None else [polished]
+        finest = polished(local, waiting.pop(0), spread, soft=soft)
+        done += [] if finest is None else [finest]
     ranked = sorted(done + waiting, key=lambda c: c.cost)
-    if ranked and not _fits(local, ranked[0], spread):
-        ranked = sorted([*ranked, *_free(local, spread)], key=lambda c: c.cost)
-    return [moved(c, middle) for c in ranked if c.kind in possible]
+    if "polygon" in kinds and not (ranked and _explains(local, ranked[0], spread)):
+        ranked = sorted([*ranked, *free_candidate(local, spread)], key=lambda c: c.cost)
+    return [moved(c, middle) for c in ranked if c.kind in ("wall", *kinds)]
+
+
+def _fits(points: Floats, spread: float, thorough: bool, kinds: Sequence[str]) -> Iterator[tuple[Figure, bool]]:
+    """Yield figures that a few rounds of giving points back lead to, and whether at right angles.
+
+    The fits are made on some of the points, where there are many. Far rivals are fitted only if that is asked.
+    """
+    kept = by_bearing(points)
+    kept = kept[:: -(-len(kept) // ENOUGH_POINTS)]
+    for look in range(LOOKS):
+        ways = Ways.through(kept, spread)
+        fits: dict[Way, tuple[float, Figure]] = {}
+        for way, least in sorted(ways.least.items(), key=lambda item: item[1]):
+            if least > min((cost for cost, _ in fits.values()), default=np.inf) + AHEAD and not thorough:
+                break
+            figure = ways.fitted(*way) if KIND_OF[way] in kinds else None
+            if figure is not None:
+                fits[way] = ways.cost(figure, way), figure
+        if not fits:
+            return
+        best, nearest = min(fits.values(), key=lambda fit: fit[0])
+        for (_, square), (cost, figure) in fits.items():
+            if cost <= best + RIVAL or thorough:
+                yield figure, square
+        on_it = np.abs(_distance(nearest, kept)) <= SIGMAS * spread
+        if on_it.mean() >= NEARLY_ALL_POINTS:
+            return
+        kept = kept[in_company(kept, spread) if look == 0 else on_it]
+        if len(kept) < LEAST_POINTS:
+            return
+
+
+Way = tuple[int, bool]  # number of sides, 0 of a circle and 1 of a wall; and whether at right angles
+KIND_OF = {(0, False): "circle", (1, False): "wall", (3, False): "triangle", (5, False): "pentagon"}
+KIND_OF |= {(4, False): "polygon", (4, True): "rectangle"}
+
+
+@dataclass(frozen=True, eq=False)
+class Ways:
+    """All ways to explain points in order, shape (N, 2), metres, and the least that each can cost.
+
+    Costs are told up to what all explanations of these points have in common.
+    """
+
+    points: Floats
+    spread: float
+    cuts: dict[int, Cut]
+    spans: list[tuple[float, float]]
+    least: dict[Way, float]
+    done: dict[Way, Figure | None]
+
+    @classmethod
+    def through(cls, points: Floats, spread: float) -> Ways:
+        """Return the ways to explain these points."""
+        unseen = UNSEEN + SIGMAS * (spread - LEAST_SPREAD)
+        ways = cls(points, spread, best_cuts(points, unseen), chords(points, unseen), {}, {})
+        circle, wall = fit_circle(points, "taubin"), fit_line(points)
+        if circle is not None:
+            ways.least[0, False] = ways.cost(circle, (0, False))
+            if np.abs(circle.signed_distance(points)).max() <= SIGMAS * spread:
+                ways.done[0, False] = circle if circle.radius <= MOST_RADIUS else None
+        if wall is not None:
+            ways.done[1, False], ways.least[1, False] = wall, ways.cost(wall, (1, False))
+        for k in (3, 4, 5):
+            if k in ways.cuts or ways.spans:
+                squares = ways.cuts[k].squares if k in ways.cuts else 0.0
+                for square in (False, True)[: 1 + (k == 4)]:
+                    ways.least[k, square] = ways._cost(squares, (k, square))
+        return ways
+
+    def cost(self, figure: Figure, way: Way) -> float:
+        """Return what a fit costs."""
+        return self._cost(float((_distance(figure, self.points) ** 2).sum()), way)
+
+    def _cost(self, squares: float, way: Way) -> float:
+        k, square = way
+        fitted = (OF_CIRCLE, OF_WALL)[k] if k <= 1 else OF_SQUARE if square else OF_FREE_SIDES[k]
+        nameless = NAMELESS_COST if k == 4 and not square else 0.0
+        return squares / self.spread**2 + price(fitted, len(self.points), self.spread) + nameless
+
+    def fitted(self, k: int, square: bool) -> Figure | None:
+        """Return the fit; None where there is none.
+
+        One that costs far more than it could began badly: it begins once more, from one side more than the best
+        outline that has one side less; at right angles, from frames around the points.
+        """
+        if (k, square) not in self.done:
+            fit: Circle | Outlines | None = None
+            if k == 0:
+                fit = _circle_through(self.points)
+            elif (starts := outlines_with(self.cuts, self.spans, k)) is not None:
+                begin = Outlines(starts.angles[:, :1] + QUARTERS, starts.offsets) if square else starts
+                fit = _refined(self.points, begin, self.spread, square=square)
+                if fit is None or self.cost(fit, (k, square)) > self.least[k, square] + BEGAN_BADLY:
+                    begin = frames(self.points, starts) if square else self._one_side_more(k)
+                    begin = begin if fit is None else joined(fit, begin)
+                    fit = _refined(self.points, begin, self.spread, square=square)
+            self.done[k, square] = fit
+        return self.done[k, square]
+
+    def _one_side_more(self, k: int) -> Outlines:
+        """Return starts with k sides, from the best outline that has one less."""
+        fewer = self.fitted(k - 1, False) if k > 3 else None
+        return one_side_more(self.points, fewer) if isinstance(fewer, Outlines) else Outlines(*np.empty((2, 0, k)))
+
+
+def _distance(figure: Figure, points: Floats) -> Floats:
+    """Return how far points are from a figure, shape (N,), metres."""
+    return figure.distance(points)[0] if isinstance(figure, Outlines) else figure.signed_distance(points)
+
+
+def _circle_through(points: Floats) -> Circle | None:
+    """Return Taubin's circle through the points that are nearest to it; None for one that is too large."""
+    circle = fit_circle(points, "taubin")
+    for _ in range(CIRCLE_LOOKS):
+        if circle is None:
+            return None
+        distance = np.abs(circle.signed_distance(points))
+        circle = fit_circle(points[distance <= np.quantile(distance, KEPT_NEAREST)], "taubin")
+    return circle if circle is not None and circle.radius <= MOST_RADIUS else None
+
+
+def _refined(points: Floats, starts: Outlines, spread: float, *, square: bool) -> Outlines | None:
+    """Refine the starts that lie closest to the points, and return the best one; None without a sound one."""
+    reach = SIGMAS * spread
+    near = starts[np.argsort(truncated_cost(points, starts, reach + WIDER), kind="stable")[:STARTS_KEPT]]
+    fits = refine_hard(points, near, reach, square=square)
+    fits = fits[fits.sound()]
+    if len(fits):
+        best = int(np.argmin(truncated_cost(points, fits, reach)))
+        return fits[best : best + 1]
+    sound = near[near.sound()]
+    if spread < BLURRED or len(sound) == 0:
+        return None
+    return refine_soft(points, sound[:1], spread, square=square)
 
 
 def explained_again(
@@ -109,114 +263,45 @@ def explained_again(
     soft : bool
         Share points between sides.
     """
-    shapes = [c for c in before if c.figure is not None]
+    shapes = [c for c in before if c.shape is not None]
     kept = shapes[:1] + [c for c in shapes if c.kind != shapes[0].kind][:1]
     middle = points.mean(axis=0)
     local, again = points - middle, list[Candidate]()
     for old in (moved(c, -middle) for c in kept):
-        anew = judged(local, old.figure, spread, square=old.square) if again and old.figure is not None else None
-        if anew is None or anew.cost < again[0].cost + CONTENDER:  # as in ``candidates``: no polish for far rivals
-            anew = _polished(local, old, spread, soft)
+        anew: Candidate | None = judged(local, old.figure, spread, square=old.square)
+        if anew is not None and (not again or anew.cost < again[0].cost + CONTENDER):
+            anew = polished(local, old, spread, soft=soft)
         again += [] if anew is None else [anew]
     return [moved(c, middle) for c in sorted(again, key=lambda c: c.cost)]
-
-
-def _rough(points: Floats, spread: float, rng: np.random.Generator) -> list[Candidate]:
-    """Return the explanations that RANSAC and a few rounds of giving points back lead to, in any order.
-
-    The fits are made on some of the points, where there are many; all of them judge.
-    """
-    some_rng, circle_rng, line_rng = rng.spawn(3)
-    some, reach = points[some_rng.permutation(len(points))[:ENOUGH_POINTS]], SIGMAS * spread
-    circle = find_circle(some, reach, trials=CANDIDATE_CIRCLE_TRIALS, rng=circle_rng)
-    lines = ransac_lines(some, reach, rng=line_rng)
-    found = [judged_wall(points, line, _length_along(points, line, reach), spread) for line in lines[:1]]
-    if circle is not None and circle.radius <= MOST_RADIUS:
-        found.append(judged(points, circle, spread))
-    return found + [judged(points, o, spread, square=square) for o, square in _polygons(some, lines, spread)]
 
 
 def free_candidate(points: Floats, spread: float) -> list[Candidate]:
     """Return the outline of any straight pieces, judged; nothing where the points do not close."""
     middle = points.mean(axis=0)
-    return [moved(c, middle) for c in _free(points - middle, spread)]
+    outline = free_outline(points - middle, spread)
+    return [] if outline is None else [moved(judged(points - middle, outline, spread), middle)]
 
 
-def _fits(points: Floats, best: Candidate, spread: float) -> bool:
+def _explains(points: Floats, best: Candidate, spread: float) -> bool:
     """Tell whether nearly all points lie on the best explanation, all around, and without any order in their misses."""
-    if best.figure is None or min(best.seen) < NEARLY_ALL or best.n_on < NEARLY_ALL * len(points):
+    if isinstance(best.figure, Line) or min(best.seen) < NEARLY_ALL or best.n_on < NEARLY_ALL * len(points):
         return False
     return lack_of_fit(points, best.figure, spread, square=best.square) >= FITS
 
 
-def _free(points: Floats, spread: float) -> Iterator[Candidate]:
-    """Yield the outline of any straight pieces."""
-    outline = free_outline(points, spread)
-    if outline is not None:
-        yield judged(points, outline, spread)
-
-
-def _polygons(points: Floats, lines: list[Line], spread: float) -> Iterator[tuple[Outlines, bool]]:
-    """Yield the best outline of three, four and five sides, and the best with right angles, with whether it is that."""
-    reach = SIGMAS * spread
-    sides = line_guesses(points, lines, reach)
-    fewer: Outlines | None = None  # the best with a side less
-    for k in (3, 4, 5):
-        guess = guess_outlines(points, sides, k, reach)
-        if fewer is not None:
-            guess = joined(guess, one_side_more(points, fewer))
-        if k == 4:
-            upright = refined(points, guess_rectangles(points, sides, guess), spread, square=True)
-            if upright is not None:
-                yield upright, True
-        fewer = refined(points, guess, spread, square=False)
-        if fewer is not None:
-            yield fewer, False
-
-
-def refined(points: Floats, guess: Outlines, spread: float, *, square: bool) -> Outlines | None:
-    """Refine the guesses that lie closest to the points, and return the best one; None without a sound one."""
-    reach = SIGMAS * spread
-    near = guess[np.argsort(truncated_cost(points, guess, reach + WIDER), kind="stable")]
-    fits = refine_hard(points, near[:STARTS_KEPT], reach, square=square)
-    fits = fits[fits.sound()]
-    if len(fits):
-        best = int(np.argmin(truncated_cost(points, fits, reach)))
-        return fits[best : best + 1]
-    sound = near[near.sound()]
-    if spread < BLURRED or len(sound) == 0:
-        return None
-    return refine_soft(points, sound[:1], spread, square=square)
-
-
-def _polished(points: Floats, rough: Candidate, spread: float, soft: bool) -> Candidate | None:
-    """Fit a candidate to the last digit; None for a circle that is none."""
-    if rough.figure is None:
-        return rough
-    done = polished(points, rough.figure, spread, soft=soft, square=rough.square)
-    return rough if done is None and isinstance(rough.figure, Outlines) else done
-
-
-def polished(
-    points: Floats, figure: Circle | Outlines, spread: float, *, soft: bool = True, square: bool = False
-) -> Candidate | None:
-    """Return a figure near its solution, fitted to the last digit and judged; None where that leads nowhere."""
+def polished(points: Floats, rough: Candidate, spread: float, *, soft: bool = True) -> Candidate | None:
+    """Return a candidate near its solution fitted to the last digit, and judged; None for a circle that is none."""
+    figure, square = rough.figure, rough.square
     if isinstance(figure, Circle):
         circle = _polished_circle(points, figure, spread)
         return None if circle is None else _unless_short(judged(points, circle, spread), circle)
-    if not figure.sound()[0]:
-        return judged(points, figure, spread)  # a free outline is as good as it gets
-    if soft:
-        fit = refine_soft(points, figure, spread, square=square)
-    else:
-        fit = refine_hard(points, figure, SIGMAS * spread, square=square)
-    return judged(points, fit, spread, square=square) if fit.sound()[0] else None
-
-
-def _length_along(points: Floats, line: Line, reach: float) -> float:
-    """Return over what length a line's points lie, metres."""
-    near = points[np.abs(line.signed_distance(points)) <= reach]
-    return float(np.ptp(near @ line.direction)) if len(near) else 0.0
+    if isinstance(figure, Outlines) and figure.sound()[0]:  # a free outline is as good as it gets
+        if soft:
+            fit = refine_soft(points, figure, spread, square=square)
+        else:
+            fit = refine_hard(points, figure, SIGMAS * spread, square=square)
+        figure = fit if fit.sound()[0] else figure
+    return judged(points, figure, spread, square=square)
 
 
 def _unless_short(candidate: Candidate, circle: Circle) -> Candidate | None:
@@ -243,6 +328,8 @@ def _polished_circle(points: Floats, circle: Circle, spread: float) -> Circle | 
 def moved(candidate: Candidate, offset: Floats) -> Candidate:
     """Return the candidate, shifted by ``offset``, shape (2,), metres."""
     figure = candidate.figure
-    if isinstance(figure, (Circle, Outlines)):
+    if isinstance(figure, Line):
+        figure = Line(figure.angle, figure.offset + float(figure.normal @ offset))
+    else:
         figure = figure.moved(offset)
     return replace(candidate, figure=figure)

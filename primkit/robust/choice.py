@@ -15,17 +15,17 @@ from numpy.typing import NDArray
 
 from ..arguments import Floats, Ints
 from ..circles import straightened
+from ..lines import Line
 from ..shapes import KINDS, Circle, Shape
 from .candidates import candidates, free_candidate
 from .deviations import Certainty, certainty
 from .evidence import Candidate
 from .lack_of_fit import lack_of_fit
 from .outlines import LEAST_SIDE
-from .scatter import CELL, SIGMAS, noise_of
+from .scatter import SIGMAS, depth_of, noise_of
 
 CERTAIN = 10.0  # a margin of so much is very strong evidence (Kass and Raftery, 1995)
 MOST_ON_IT = 0.9  # share of the points; more off it may be something else
-DEEP_CELLS, DEEP_NOISE = 1.7, 5.0  # inside: farther than cells and noise, times its deviation, bring a point
 MOST_SEEN = 0.75  # share of each side; behind more there may be something else
 
 
@@ -41,12 +41,10 @@ class Choice:
         The explanations that were fitted, the best first.
     spread : float
         Standard deviation of the points from the outline, metres.
-    seed : int
-        Seed for the RANSAC stages; None for another one each time.
     soft : bool
         Whether points were shared between sides.
-    at_a_glance : bool
-        Whether the best explanation was beyond doubt, and its rivals were not fitted.
+    thorough : bool
+        Whether all rivals were fitted, and not only those that came into question.
     kinds : sequence of str
         The kinds that can be there; others are no rivals.
     """
@@ -54,9 +52,8 @@ class Choice:
     points: Floats
     ranked: list[Candidate]
     spread: float
-    seed: int | None = None
     soft: bool = True
-    at_a_glance: bool = False
+    thorough: bool = True
     kinds: Sequence[str] = KINDS
 
     @cached_property
@@ -81,39 +78,47 @@ class Choice:
     @cached_property
     def inside(self) -> NDArray[np.bool_]:
         """Which points lie deep inside the chosen shape, shape (N,): no beam gets there, unless it is two."""
-        return self.distance < -(DEEP_CELLS * CELL + DEEP_NOISE * noise_of(self.spread))
+        return self.distance < -depth_of(self.spread)
 
     def certainty(self, points: Floats, scans: Ints | None, noise_std: float) -> Certainty:
         """Return how sure the numbers of the chosen shape are, by points on it and their scans; see ``deviations``."""
         best = self.ranked[0] if self.ranked else None
-        if best is None or best.figure is None:
+        if best is None or isinstance(best.figure, Line):
             return Certainty((), ())
         middle, figure = points.mean(axis=0), best.figure
         return certainty(
             figure.moved(-middle), points - middle, self.spread, square=best.square, scans=scans, noise_std=noise_std
         )
 
+    @property
+    def lead(self) -> float:
+        """How much more the best rival of another kind costs, of those that were fitted; infinite without one.
+
+        That boards seldom have shapes without a name is held against them by half.
+        """
+        return self._ahead_of(self.ranked[1:])
+
     @cached_property
     def margin(self) -> float:
         """How much more the best rival costs: another kind, an outline of any straight pieces, or one that bends.
 
-        That boards seldom have shapes without a name is held against them by half. Rivals that were not fitted are
-        fitted when this is asked.
+        Rivals that were not fitted are fitted when this is asked.
         """
-        best, rivals = self.ranked[0], self.ranked[1:]
-        if self.at_a_glance:
-            rivals = candidates(self.points, self.spread, soft=self.soft, rng=self.seed)
-        rivals = [*rivals, *free_candidate(self.points, self.spread)]
-        rivals = [rival for rival in rivals if rival.kind in ("wall", *self.kinds)]
-        others = [rival.cost - rival.nameless / 2 for rival in rivals if rival.kind != best.kind]
-        margin = min(others, default=float("inf")) - best.cost
+        rivals = self.ranked[1:] if self.thorough else candidates(self.points, self.spread, soft=self.soft)
+        margin = self._ahead_of([*rivals, *free_candidate(self.points, self.spread)])
         return margin if self.fit >= CERTAIN else min(margin, self.fit)
+
+    def _ahead_of(self, rivals: Sequence[Candidate]) -> float:
+        """Return how much more the best of the rivals costs that is of another kind, and can be there."""
+        best, possible = self.ranked[0], ("wall", *self.kinds)
+        others = [c.cost - c.nameless / 2 for c in rivals if c.kind != best.kind and c.kind in possible]
+        return min(others, default=float("inf")) - best.cost
 
     @cached_property
     def fit(self) -> float:
         """How much more the outline costs when it may bend: see ``lack_of_fit``; infinite without a shape."""
         best = self.ranked[0] if self.ranked else None
-        if best is None or best.figure is None:
+        if best is None or isinstance(best.figure, Line):
             return float("inf")
         middle = self.points.mean(axis=0)
         return lack_of_fit(self.points - middle, best.figure.moved(-middle), self.spread, square=best.square)
@@ -122,16 +127,15 @@ class Choice:
     def certain(self) -> bool:
         """Whether what it is, is beyond doubt.
 
-        Its margin says so (at a glance, the bounds of all others did); nearly all points lie on it, none deep inside;
-        nearly all of it was seen; it is so large that its kind can show.
+        It is ahead of all rivals, and of itself with bends; nearly all points lie on it, none deep inside; nearly all
+        of it was seen; it is so large that its kind can show.
         """
         best = self.ranked[0] if self.ranked else None
         if best is None or best.shape is None:
             return False
-        margin = self.fit if self.at_a_glance else self.margin
         large = best.shape.dimensions[-1] if isinstance(best.shape, Circle) else best.shape.sides.min()
         return bool(
-            margin >= CERTAIN
+            min(self.lead, self.fit) >= CERTAIN
             and self.on_it.mean() >= MOST_ON_IT
             and not self.inside.any()
             and min(best.seen) >= MOST_SEEN

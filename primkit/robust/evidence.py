@@ -30,7 +30,7 @@ from ..seen import PLACES_PER_SIDE, REACH, places_between, shares_of
 from ..shapes import Circle, Kind, Shape
 from .outlines import Outlines
 from .refine import shares
-from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
+from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, depth_of, scatter
 
 # What is supposed before the points are looked at. Each number of a shape is known to about a centimetre. An outline
 # is seen nearly all around: each metre that was not seen is as unlikely as one in e^40. And an outline that is none of
@@ -38,6 +38,9 @@ from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
 PRIOR_WIDTH = 0.01
 UNSEEN_COST = 80.0
 NAMELESS_COST, NAMELESS_PART_COST = 8.0, 20.0
+# No beam gets inside: the cost of each point there beyond those that lie outside, which are strays; more are not seen
+# through a mouth.
+INSIDE_COST, MOST_INSIDE = 10.0, 5
 WHOLE = 0.9  # share of each side
 
 # How uncertain N even points leave each fitted number, as a variance in units of spread^2 / N: a circle's centre and
@@ -50,14 +53,17 @@ OF_FREE_SIDES = {k: np.tile(OF_SIDE * k, k) for k in (3, 4, 5)}  # a side has a 
 OF_WALL = np.array([1.0, 3.0, 1.0, 1.0])
 
 
+Figure = Circle | Outlines | Line
+
+
 @dataclass(frozen=True, eq=False)
 class Candidate:
     """One explanation of a cluster.
 
     Parameters
     ----------
-    figure : Circle, Outlines (one row) or None
-        What the points would lie on; None for a bare wall.
+    figure : Circle, Outlines (one row) or Line
+        What the points would lie on; a line is that of a bare wall.
     square : bool
         Whether an outline of four sides keeps right angles.
     cost : float
@@ -72,7 +78,7 @@ class Candidate:
         What of the cost is owed to its being none of the board's kinds.
     """
 
-    figure: Circle | Outlines | None
+    figure: Figure
     square: bool
     cost: float
     length: float
@@ -83,30 +89,37 @@ class Candidate:
     @cached_property
     def shape(self) -> Shape | None:
         """The figure as a shape; None for a bare wall."""
-        return self.figure.polygon() if isinstance(self.figure, Outlines) else self.figure
+        if isinstance(self.figure, Outlines):
+            return self.figure.polygon()
+        return self.figure if isinstance(self.figure, Circle) else None
 
     @property
     def kind(self) -> Kind | Literal["wall"]:
         """The shape's kind, or ``"wall"``."""
         if isinstance(self.figure, Outlines):
             return self.figure.kind
-        return "wall" if self.figure is None else "circle"
+        return "circle" if isinstance(self.figure, Circle) else "wall"
 
 
-def judged(points: Floats, figure: Circle | Outlines, spread: float, *, square: bool = False) -> Candidate:
-    """Return a fitted figure with its cost.
+def judged(points: Floats, figure: Figure, spread: float, *, square: bool = False) -> Candidate:
+    """Return a fitted figure with its cost; of a bare wall, the back was not seen.
 
     Parameters
     ----------
     points : array, shape (N, 2)
         Of the whole cluster, metres.
-    figure : Circle or Outlines (one row)
+    figure : Circle, Outlines (one row) or Line
         The fit.
     spread : float
         Standard deviation of the points from the outline, metres.
     square : bool
         Whether four sides were fitted with right angles.
     """
+    if isinstance(figure, Line):
+        on_it, log_likelihood = _along_smooth(figure.signed_distance(points), spread)
+        length = _length_along(points, figure, SIGMAS * spread)
+        cost = _cost(log_likelihood, OF_WALL, len(points), spread) + _length_cost(on_it, length)
+        return Candidate(figure, False, cost + UNSEEN_COST * length, length, on_it)
     if isinstance(figure, Circle):
         lengths, fitted = np.array([figure.perimeter]), OF_CIRCLE
         places = figure.outline(4 * PLACES_PER_SIDE)[None]
@@ -123,17 +136,10 @@ def judged(points: Floats, figure: Circle | Outlines, spread: float, *, square: 
     seen = shares_of(places, points[np.abs(distance) <= SIGMAS * spread])
     length = float(lengths @ np.array(seen))
     cost = _cost(log_likelihood, fitted, len(points), spread) + _length_cost(on_it, length)
-    cost += UNSEEN_COST * float(lengths.sum() - length)
+    cost += UNSEEN_COST * float(lengths.sum() - length) + INSIDE_COST * _inside(distance, spread)
     named = isinstance(figure, Circle) or square or (figure.kind != "polygon" and len(lengths) != 4)
     nameless = 0.0 if named else NAMELESS_COST if min(seen) >= WHOLE else NAMELESS_PART_COST
     return Candidate(figure, square, cost + nameless, length, on_it, seen, nameless)
-
-
-def judged_wall(points: Floats, line: Line, length: float, spread: float) -> Candidate:
-    """Return a bare wall of that length, in metres, with its cost; its back was not seen."""
-    on_it, log_likelihood = _along_smooth(line.signed_distance(points), spread)
-    cost = _cost(log_likelihood, OF_WALL, len(points), spread) + _length_cost(on_it, length) + UNSEEN_COST * length
-    return Candidate(None, False, cost, length, on_it)
 
 
 def price(fitted: Floats, n_points: int, spread: float) -> float:
@@ -154,6 +160,19 @@ def joint_cost(candidates: Sequence[Candidate]) -> float:
     n_on, length = sum(c.n_on for c in candidates), sum(c.length for c in candidates)
     together = _length_cost(n_on, length) - sum(_length_cost(c.n_on, c.length) for c in candidates)
     return sum(c.cost for c in candidates) + together
+
+
+def _inside(distance: Floats, spread: float) -> int:
+    """Return how many points deep inside an outline count: not those that may be strays, as there are outside."""
+    depth = depth_of(spread)
+    n_inside, n_outside = np.count_nonzero(distance < -depth), np.count_nonzero(distance > depth)
+    return int(np.clip(n_inside - n_outside, 0, MOST_INSIDE))
+
+
+def _length_along(points: Floats, line: Line, reach: float) -> float:
+    """Return over what length a line's points lie, metres."""
+    near = points[np.abs(line.signed_distance(points)) <= reach]
+    return float(np.ptp(near @ line.direction)) if len(near) else 0.0
 
 
 def _along_smooth(distance: Floats, spread: float) -> tuple[float, float]:

@@ -32,22 +32,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import Floats
+from .cuts import in_company, long_enough, moments_between, scatter_sums, squares_of
 from .evidence import judged
 from .outlines import Outlines
 from .refine import refine_soft
 from .scatter import CELL, SIGMAS
-from .starts import long_enough, moments_between, scatter_sums, squares_of
 
 BEAD_CELLS, BEAD_SPREADS = 3.0, 4.0  # neighbours this near are one bead of the path: then noise makes no detours
 MOST_BEADS = 300  # more are made larger: the tree's work goes with their number squared
-COMPANY, LEAST_COMPANY = 3.0, 3  # a bead with fewer points within three smallest beads is a stray
 AT_AN_END = 0.2  # of the path: there a stray may be its end, and is left out where that closes the path
 CLOSED_GAP = 0.04  # m: nearer ends close an outline: nearly twice as far as neighbours are linked
 PATH_KNOTS = 120  # cuts lie between two of so many places along the path
 PIECE_COST = 20.0  # about the price of a side's two numbers, see ``evidence.price``
 DEARER, TIMES_DEARER = 2.0, 4  # where pieces do not close, fewer are tried
 SIDE_CELLS, SIDE_SPREADS = 5.0, 2.0  # no side is shorter
-SHORT, FLAT_TURN = 3.0, np.radians(25)  # of the least side; where two pieces may be one
+SHORT, FLAT_TURN = 4.0, np.radians(35)  # of the least side; where two pieces may be one
 CUT_LOOKS = 2  # strays lead cuts astray: once more without them
 FAR_SPREADS, FAR_CELLS = 9.0, 4.0  # what is farther from the first outline is a stray to the second
 
@@ -108,7 +107,14 @@ def _pruned(points: Floats, outline: Outlines, spread: float, least: float) -> O
 
 def round_order(points: Floats, spread: float) -> Floats | None:
     """Return the points in their order around an outline, counter-clockwise and without strays; None if it is open."""
-    path = path_through(points, spread)
+    near = in_company(points, spread)
+    ordered = _round_path(points, points[near], spread)
+    return _round_path(points, points, spread) if ordered is None and not near.all() else ordered
+
+
+def _round_path(points: Floats, reliable: Floats, spread: float) -> Floats | None:
+    """Return the points along the path through the reliable ones; None where its ends do not meet."""
+    path = path_through(reliable, spread)
     if path is None:
         return None
     n = max(1, int(AT_AN_END * len(path)))
@@ -130,11 +136,10 @@ def path_through(points: Floats, spread: float) -> Floats | None:
     from scipy.sparse.csgraph import dijkstra, minimum_spanning_tree
 
     size = _bead_size(spread)
-    beads, alone = _beads(points, size)
+    beads = _beads(points, size)
     while len(beads) > MOST_BEADS:
         size *= len(beads) / MOST_BEADS
-        beads, alone = _beads(points, size)
-    beads = beads[~alone]
+        beads = _beads(points, size)
     if len(beads) < 4:
         return None
     apart = np.hypot(*np.moveaxis(beads[:, None] - beads, 2, 0))
@@ -152,16 +157,12 @@ def _bead_size(spread: float) -> float:
     return max(BEAD_CELLS * CELL, BEAD_SPREADS * spread)
 
 
-def _beads(points: Floats, size: float) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return the means of the points in squares of this size, shape (M, 2), and which of them are strays, (M,)."""
-    from scipy.spatial import cKDTree
-
+def _beads(points: Floats, size: float) -> Floats:
+    """Return the means of the points in squares of this size, shape (M, 2)."""
     ij = np.floor((points - points.min(axis=0, initial=np.inf)) / size).astype(np.int64)
     square, n = np.unique(ij, axis=0, return_inverse=True, return_counts=True)[1:]
     square = square.ravel().astype(np.intp, copy=False)  # numpy 2.0 returns a column
-    beads = np.column_stack([np.bincount(square, axis, len(n)) / n for axis in points.T])
-    near = cKDTree(points).query_ball_point(beads, max(COMPANY * BEAD_CELLS * CELL, size), return_length=True)
-    return beads, near < LEAST_COMPANY
+    return np.column_stack([np.bincount(square, axis, len(n)) / n for axis in points.T])
 
 
 def _along(points: Floats, path: Floats) -> tuple[Floats, Floats]:

@@ -30,7 +30,7 @@ from ..arguments import Floats
 from ..shapes import KINDS, NEARLY_RIGHT, Kind, Polygon
 
 # What a board can hold, and a sensor can tell: sides of at least 1.5 cm, corners that bend by 15 to 160 degrees.
-LEAST_SIDE = 0.015
+LEAST_SIDE, LEAST_PLANK = 0.015, 0.004
 LEAST_TURN, MOST_TURN = np.radians(15), np.radians(160)
 LEAST_BEND, MOST_BEND = np.radians(8), np.radians(172)  # the same for outlines without a name
 QUARTERS = np.arange(4) * (np.pi / 2)  # the bearings of a rectangle's normals, from its first
@@ -59,7 +59,10 @@ class Outlines:
     @cached_property
     def _normals(self) -> Floats:
         """The outward normals, shape (C, 2, K)."""
-        return np.stack([np.cos(self.angles), np.sin(self.angles)], axis=1)
+        normals = np.empty((len(self.angles), 2, self.angles.shape[1]))
+        np.cos(self.angles, out=normals[:, 0])
+        np.sin(self.angles, out=normals[:, 1])
+        return normals
 
     @cached_property
     def _spans(self) -> tuple[Floats, Floats]:
@@ -72,12 +75,14 @@ class Outlines:
 
     def distances(self, points: Floats) -> Floats:
         """Return r, the signed distance of each point from each side's line, shape (C, N, K), metres."""
-        return points @ self._normals - self.offsets[:, None, :]
+        r = self._normals.transpose(0, 2, 1) @ points.T  # side by side in memory: what is asked of all sides is fast
+        r -= self.offsets[:, :, None]
+        return r.transpose(0, 2, 1)
 
     def along(self, points: Floats) -> Floats:
         """Return where each point's foot lies along each side's line, shape (C, N, K), metres."""
         cos, sin = self._normals[:, 0], self._normals[:, 1]
-        return points @ np.stack([-sin, cos], axis=1)
+        return (np.stack([-sin, cos], axis=2) @ points.T).transpose(0, 2, 1)
 
     def corners(self) -> Floats:
         """Return the corners, shape (C, K, 2), metres; corner i lies between side i - 1 and side i."""
@@ -99,12 +104,16 @@ class Outlines:
         return self._spans
 
     def sound(self) -> NDArray[np.bool_]:
-        """Tell which outlines are closed and convex, with sides and corners that a sensor can tell, shape (C,)."""
+        """Tell which outlines are closed and convex, with sides and corners that a sensor can tell, shape (C,).
+
+        A rectangle may be thinner, where its long sides tell how it lies.
+        """
         turn = np.mod(_after(self.angles) - self.angles, 2 * np.pi)
         begin, end = self.spans()
         once_round = np.abs(turn.sum(axis=1) - 2 * np.pi) < 1e-6
         bends = ((turn >= LEAST_TURN) & (turn <= MOST_TURN)).all(axis=1)
-        return once_round & bends & (end - begin >= LEAST_SIDE).all(axis=1)
+        plank = turn.shape[1] == 4 and (np.abs(turn - np.pi / 2) <= NEARLY_RIGHT).all(axis=1, keepdims=True)
+        return once_round & bends & (end - begin >= np.where(plank, LEAST_PLANK, LEAST_SIDE)).all(axis=1)
 
     def closes(self, least: float) -> NDArray[np.bool_]:
         """Tell which outlines run round once, convex or not, with corners that bend and no side below ``least`` [m]."""

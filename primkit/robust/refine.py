@@ -26,16 +26,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import Floats
-from .outlines import Outlines
-from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, scatter
+from .outlines import Outlines, from_angle_order
+from .scatter import GHOSTS, LEAST_SPREAD, NOWHERE, OUTLINE_LENGTH, scatter
 
 # A side that has fewer points than this (shares count in part) has nothing to be fitted to, and stays.
 LEAST_OF_SIDE = 2.0
 
 HARD_ROUNDS = 8  # nearly all settle in four or five
 SOFT_ROUNDS = 30  # shares settle slowly around blurred corners; what is left then is far below a cell
-SETTLED_TURN = 1e-5  # radians, and 1e-6 m: a hundredth of what any sensor tells
+SETTLED_TURN = 1e-5  # radians, and 1e-6 m, without noise: a hundredth of what any sensor tells
 ROW_METRE = 10.0  # a metre counts as so many radians
+CORNER_SHARE = 0.25  # of both sides' lengths, where a corner is cut off
 LONGEST_LEAP = 4.0  # a leap goes at most so many steps ahead, so that it stays near
 
 
@@ -58,13 +59,12 @@ def refine_hard(points: Floats, guess: Outlines, reach: float, *, square: bool =
     Outlines
         The C guesses after a few rounds; some may no longer be ``sound``.
     """
-    sides, before = np.arange(guess.angles.shape[1]), None
+    before = None
     for _ in range(HARD_ROUNDS):
         r = guess.distances(points)
-        owner = r.argmax(axis=2)
-        near = np.abs(r.max(axis=2, keepdims=True)) <= reach
-        given = (owner[..., None] == sides) & near
-        if before is not None and np.array_equal(given, before):
+        farthest_out = r.max(axis=2, keepdims=True)
+        given = (r == farthest_out) & (np.abs(farthest_out) <= reach)
+        if before is not None and (given == before).all():
             break
         before, guess = given, refit(points, given.astype(float), guess, square=square)
     return guess
@@ -101,6 +101,7 @@ def refine_soft(
     Outlines
         The C outlines, settled; or as they were before one of them would have stopped being ``sound``.
     """
+    settled = SETTLED_TURN * (spread / LEAST_SPREAD) ** 0.5
     for _ in range(SOFT_ROUNDS // 2):
         steps = [guess]
         for _ in range(2):
@@ -109,7 +110,7 @@ def refine_soft(
             if not sound(refined).all():
                 return steps[-1]
             steps.append(refined)
-            if np.abs(_as_rows(refined) - _as_rows(steps[-2])).max(initial=0.0) <= SETTLED_TURN:
+            if np.abs(_as_rows(refined) - _as_rows(steps[-2])).max(initial=0.0) <= settled:
                 return refined
         far = _leap(*steps)
         guess = far if sound(far).all() else steps[-1]
@@ -184,7 +185,7 @@ def refit(points: Floats, weights: Floats, outlines: Outlines, *, square: bool =
     """
     x, y = points.T
     features = np.array([np.ones_like(x), x, y, x * x, y * y, x * y])
-    mass, *moments = np.moveaxis(features @ weights, 1, 0)  # (C, K) each
+    mass, *moments = (features @ weights).transpose(1, 0, 2)  # (C, K) each
     enough = mass >= LEAST_OF_SIDE
     mx, my, mxx, myy, mxy = moments / np.where(enough, mass, 1.0)  # sides without points are set right below
     sxx, syy, sxy = mxx - mx * mx, myy - my * my, mxy - mx * my  # scatter about each side's mean
@@ -210,3 +211,38 @@ def _common_bearing(sxx: Floats, syy: Floats, sxy: Floats) -> Floats:
     mixed = np.where(turned, -sxy, sxy).sum(axis=1)
     first = 0.5 * np.arctan2(2 * mixed, along - across) + np.pi / 2
     return first[:, None] + np.arange(4) * (np.pi / 2)
+
+
+def one_side_more(points: Floats, outline: Outlines) -> Outlines:
+    """Return guesses with one side more than a fitted outline has: each side broken in two, each corner cut off.
+
+    Two sides that hardly bend, or a short one, are taken for one until all the others are in their places.
+
+    Parameters
+    ----------
+    points : array, shape (N, 2)
+        Metres.
+    outline : Outlines
+        One row of K sides.
+
+    Returns
+    -------
+    Outlines
+        2 K guesses of K + 1 sides.
+    """
+    k = outline.angles.shape[1]
+    owner = outline.distances(points)[0].argmax(axis=1)
+    begin, end = (ends[0] for ends in outline.spans())
+    along = outline.along(points)[0][np.arange(len(points)), owner]
+    place = (along - begin[owner]) / (end - begin)[owner]  # 0 where a point's side begins, 1 where it ends
+    weights, angles = [], []
+    for side in range(k):
+        own, its_end = owner == side, 1 - CORNER_SHARE
+        corner = (own & (place > its_end)) | ((owner == (side + 1) % k) & (place < CORNER_SHARE))
+        turn = np.mod(outline.angles[0, (side + 1) % k] - outline.angles[0, side], 2 * np.pi)
+        for taken in (own & (place > 0.5), corner):
+            weights.append(np.column_stack([(owner[:, None] == np.arange(k)) & ~taken[:, None], taken]))
+            angles.append([*outline.angles[0], outline.angles[0, side] + turn / 2])
+    start = Outlines(np.array(angles), np.tile([*outline.offsets[0], 0.0], (2 * k, 1)))
+    guess = refit(points, np.array(weights, dtype=float), start)
+    return from_angle_order(guess.angles, guess.offsets)

@@ -21,30 +21,35 @@ extending K-means with efficient estimation of the number of clusters".
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arguments import Floats
 from ..lines import fit_line
 from ..seen import seen_shares
-from ..segmentation import LEAST_GROUP, kmeans
+from ..segmentation import LEAST_GROUP, LINK, kmeans, link
 from ..shapes import KINDS, Polygon, Shape
 from .candidates import candidates, explained_again
 from .choice import Choice
 from .evidence import Candidate, joint_cost
-from .first_fit import at_a_glance, at_another_glance
 from .scatter import NOWHERE, SIGMAS
 
 Explain = Callable[[Floats], "Group"]
+
+# A second opinion explains at most so many points, and each try counts as so many more: about a second's work.
+MOST_WORK, WORK_OF_A_TRY = 50_000, 250
 
 CLOSED = 0.9  # an outline seen on nine tenths of its length is no piece of another
 WELL_EXPLAINED = 0.9  # share of a group's points on its shape; with fewer, the group may be two
 MOST_ACROSS = 0.45  # m: the paper's largest rectangle is 0.424 m from corner to corner; wider pieces are of two shapes
 HULL_SPREADS, HULL_CELLS = 6.0, 0.002  # the hull runs along the outermost points: others lie up to so much inside [m]
+FINER_LINKS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0)  # a group is cut where it falls apart first, linked so much more finely
 FEW_NEW = 0.1  # share of new points up to which a group is fitted anew from what it was
+FEW_OFF = 0.02  # share of the points by which more may lie beside a group's shape then
 SURE = 30.0  # margin up to which a few points more may change what a group is
 INSIDE_HULL = 0.05  # share of points that may lie inside a hull which should be an outline
 
@@ -65,6 +70,11 @@ class Group:
         return self.ranked[0].shape if self.ranked else None
 
     @cached_property
+    def box(self) -> tuple[Floats, Floats]:
+        """The lower left and the upper right of the box around the points, metres."""
+        return self.points.min(axis=0), self.points.max(axis=0)
+
+    @cached_property
     def closed(self) -> bool:
         """Whether the best explanation's outline was seen nearly all around."""
         shape = self.shape
@@ -80,9 +90,35 @@ class Group:
 class _Tried:
     """What was tried: how groups would split, what pairs would merge into, and by how much a group won."""
 
-    halves: dict[Group, tuple[Group, ...]]
-    unions: dict[tuple[Group, Group], Group | None]
-    won_by: dict[Group, float]
+    halves: dict[Group, tuple[Group, ...]] = field(default_factory=dict)
+    unions: dict[tuple[Group, Group], Group | None] = field(default_factory=dict)
+    won_by: dict[Group, float] = field(default_factory=dict)
+
+
+@dataclass
+class Opinion:
+    """Explains points, and knows how much work that was: beyond a bound, no more is tried.
+
+    Parameters
+    ----------
+    explain : callable
+        Explains (N, 2) points as a group.
+    work : int
+        The points that were explained, and some more for each try.
+    """
+
+    explain: Explain
+    work: int = 0
+
+    def __call__(self, points: Floats) -> Group:
+        """Explain points, shape (N, 2), metres."""
+        self.work += len(points) + WORK_OF_A_TRY
+        return self.explain(points)
+
+    @property
+    def bounded(self) -> bool:
+        """Whether the bound was reached."""
+        return self.work > MOST_WORK
 
 
 def cost_of(groups: Sequence[Group]) -> float:
@@ -94,21 +130,17 @@ def cost_of(groups: Sequence[Group]) -> float:
 def explained(
     points: Floats,
     spread: float,
-    seed: int = 0,
     *,
     soft: bool = True,
     thorough: bool = True,
     kinds: Sequence[str] = KINDS,
 ) -> Group:
-    """Return the points with all their explanations; or, if not to be thorough, with one that a glance is sure of.
+    """Return the points with all their explanations; or, if not to be thorough, with those that may win.
 
     Walls, and those of the kinds that can be there, are explanations.
-    Every group is measured with the same seed, so that a group's result does not depend on the others.
     """
-    best = None if thorough else at_a_glance(points, spread, soft=soft)
-    glance = best is not None and best.kind in kinds
-    ranked = [best] if best is not None and glance else candidates(points, spread, soft=soft, rng=seed, kinds=kinds)
-    return Group(points, ranked, spread, len(points), Choice(points, ranked, spread, seed, soft, glance, kinds))
+    ranked = candidates(points, spread, soft=soft, thorough=thorough, kinds=kinds)
+    return Group(points, ranked, spread, len(points), Choice(points, ranked, spread, soft, thorough, kinds))
 
 
 def grown(old: Group, points: Floats, spread: float, *, soft: bool = True) -> Group | None:
@@ -120,24 +152,14 @@ def grown(old: Group, points: Floats, spread: float, *, soft: bool = True) -> Gr
         None where all explanations should be looked for: many points are new, others are gone, what the group is was
         in doubt, or it is so now.
     """
-    in_doubt = not old.choice.at_a_glance and not _sure(old.ranked)
+    in_doubt = not old.ranked or old.choice.lead < SURE
     if in_doubt or not 1 <= len(points) / old.n_thorough <= 1 + FEW_NEW or not _holds(points, old.points):
         return None
-    if old.choice.at_a_glance:
-        best = at_another_glance(points, old.ranked[0], spread, soft=soft)
-        ranked = [] if best is None else [best]
-    else:
-        ranked = explained_again(points, old.ranked, spread, soft=soft)
-    if not ranked or ranked[0].kind != old.ranked[0].kind or not (old.choice.at_a_glance or _sure(ranked)):
+    ranked = explained_again(points, old.ranked, spread, soft=soft)
+    group = Group(points, ranked, spread, old.n_thorough, replace(old.choice, points=points, ranked=ranked))
+    if not ranked or ranked[0].kind != old.ranked[0].kind or group.choice.lead < SURE:
         return None
-    return Group(points, ranked, spread, old.n_thorough, replace(old.choice, points=points, ranked=ranked))
-
-
-def _sure(ranked: list[Candidate]) -> bool:
-    """Tell whether the best explanation is far ahead of the best one of another kind."""
-    if len(ranked) < 2:
-        return False
-    return next((c.cost for c in ranked if c.kind != ranked[0].kind), float("inf")) - ranked[0].cost >= SURE
+    return group if group.choice.on_it.mean() >= old.choice.on_it.mean() - FEW_OFF else None
 
 
 def _holds(points: Floats, fewer: Floats) -> bool:
@@ -151,9 +173,9 @@ def regrouped(
     spread: float,
     n_shapes: int | None = None,
     *,
-    explain: Explain | None = None,
+    explain: Opinion | None = None,
 ) -> tuple[list[Group], list[float]]:
-    """Split and merge groups as long as that explains the points better.
+    """Split and merge groups as long as that explains the points better, within a bound of work.
 
     Parameters
     ----------
@@ -163,8 +185,8 @@ def regrouped(
         Standard deviation of the points from the outlines, metres.
     n_shapes : int, optional
         The number of groups to end with, when it is known.
-    explain : callable, optional
-        Explains (N, 2) points as a group; ``explained`` by default.
+    explain : Opinion, optional
+        Explains (N, 2) points as a group; by ``explained`` if it is not given.
 
     Returns
     -------
@@ -174,8 +196,7 @@ def regrouped(
         For each group, how much better it explains the points than the best grouping in which it is split or
         merged with a neighbour: twice the logarithm of the Bayes factor; infinite when none was in question.
     """
-    explain = explain or partial(explained, spread=spread)
-    tried = _Tried({}, {}, {})
+    explain, tried = explain or Opinion(partial(explained, spread=spread)), _Tried()
     groups = list(groups)
     if n_shapes is None or len(groups) < n_shapes:
         groups = _split_all(groups, spread, n_shapes, explain, tried)
@@ -197,14 +218,14 @@ def _margin(group: Group, groups: list[Group], tried: _Tried) -> float:
 
 
 def _split_all(
-    groups: list[Group], spread: float, n_shapes: int | None, explain: Explain, tried: _Tried
+    groups: list[Group], spread: float, n_shapes: int | None, explain: Opinion, tried: _Tried
 ) -> list[Group]:
     """Split the group that gains most by it, again and again."""
     limit = 0.0 if n_shapes is None else np.inf
     while n_shapes is None or len(groups) < n_shapes:
         for g in groups:
             if g not in tried.halves:
-                tried.halves[g] = _halves(g, spread, n_shapes, explain)
+                tried.halves[g] = () if explain.bounded else _halves(g, spread, n_shapes, explain)
         best = min(groups, key=lambda g: _gain(tried.halves[g], g), default=None)
         if best is None or not _gain(tried.halves[best], best) < limit:
             break
@@ -220,25 +241,44 @@ def _gain(parts: tuple[Group, ...], group: Group) -> float:
 
 
 def _halves(group: Group, spread: float, n_shapes: int | None, explain: Explain) -> tuple[Group, ...]:
-    """Return a group as two; nothing when it is too small, or well explained as it is.
-
-    It is cut by K-Means, or along the points inside it, which were seen through the mouth between two shapes.
-    """
+    """Return a group as two; nothing when it is too small, or well explained as it is."""
     if not group.ranked or len(group.points) < 2 * LEAST_GROUP:
         return ()
-    inside = group.points[group.choice.inside]
-    plain = len(inside) == 0 and group.ranked[0].kind != "polygon"
+    plain = not group.choice.inside.any() and group.ranked[0].kind != "polygon"
     if n_shapes is None and plain and _share_on_shape(group, spread) >= WELL_EXPLAINED:
         return ()
-    sides = [kmeans(group.points, 2, rng=0) > 0]
-    if (mouth := fit_line(inside)) is not None:
-        sides.append(mouth.signed_distance(group.points) > 0)
-    ways = [
-        tuple(explain(group.points[side == one]) for one in (False, True))
-        for side in sides
-        if LEAST_GROUP <= np.count_nonzero(side) <= len(side) - LEAST_GROUP
-    ]
-    return min(ways, key=cost_of, default=())
+    ways = [parts for side in _sides(group, spread) if (parts := _parts(group.points, side, explain))]
+    best = min(ways, key=cost_of, default=())
+    if best and all(part.shape is not None for part in best):  # each point to the shape that it is nearer to
+        far, near = (np.abs(part.shape.signed_distance(group.points)) for part in best if part.shape is not None)
+        best = min(best, _parts(group.points, near < far, explain) or best, key=cost_of)
+    return best
+
+
+def _parts(points: Floats, side: NDArray[np.bool_], explain: Explain) -> tuple[Group, ...]:
+    """Return the points on either side, explained; nothing where they are too few."""
+    if not LEAST_GROUP <= np.count_nonzero(side) <= len(side) - LEAST_GROUP:
+        return ()
+    return explain(points[~side]), explain(points[side])
+
+
+def _sides(group: Group, spread: float) -> list[NDArray[np.bool_]]:
+    """Return ways to cut a group in two: which points lie on one side, shape (N,).
+
+    Where neighbours are farther apart than elsewhere; along the points inside it, which were seen through the mouth
+    between two shapes; and by K-Means.
+    """
+    points = group.points
+    ways = [kmeans(points, 2, rng=0) > 0]
+    if (mouth := fit_line(points[group.choice.inside])) is not None:
+        beyond, reach = mouth.signed_distance(points), SIGMAS * spread
+        ways += [beyond > reach, beyond > -reach]  # what lies on it is a side of the one or of the other
+    for finer in FINER_LINKS:
+        labels = link(points, LINK / finer)
+        if labels.max() > 0:
+            ways.append(labels == np.bincount(labels[labels >= 0]).argmax())
+            break
+    return ways
 
 
 def _share_on_shape(group: Group, spread: float) -> float:
@@ -249,14 +289,14 @@ def _share_on_shape(group: Group, spread: float) -> float:
 
 
 def _merge_all(
-    groups: list[Group], spread: float, n_shapes: int | None, explain: Explain, tried: _Tried
+    groups: list[Group], spread: float, n_shapes: int | None, explain: Opinion, tried: _Tried
 ) -> list[Group]:
     """Merge the two groups that gain most by it, again and again."""
     while len(groups) > (n_shapes or 1):
         best, best_gain = None, 0.0 if n_shapes is None else np.inf
         for a, b in combinations(groups, 2):
             if (a, b) not in tried.unions:
-                plausible = n_shapes is not None or _may_be_one(a, b, spread)
+                plausible = not explain.bounded and (n_shapes is not None or _may_be_one(a, b, spread))
                 tried.unions[a, b] = explain(np.vstack([a.points, b.points])) if plausible else None
             one = tried.unions[a, b]
             gain = cost_of([one]) - cost_of([a, b]) if one is not None and one.ranked else np.inf
@@ -277,7 +317,7 @@ def _may_be_one(a: Group, b: Group, spread: float) -> bool:
     """
     import shapely
 
-    if a.closed and b.closed:
+    if (a.closed and b.closed) or _apart(a, b) > MOST_ACROSS:
         return False
     points = np.vstack([a.points, b.points])
     hull = shapely.MultiPoint(points).convex_hull
@@ -285,3 +325,9 @@ def _may_be_one(a: Group, b: Group, spread: float) -> bool:
         return False
     depth = shapely.distance(hull.boundary, shapely.points(points))
     return bool(np.mean(depth > HULL_SPREADS * spread + HULL_CELLS) <= INSIDE_HULL)
+
+
+def _apart(a: Group, b: Group) -> float:
+    """Return how far the boxes around two groups are apart, metres."""
+    (low, high), (other_low, other_high) = a.box, b.box
+    return float(np.max(np.maximum(low - other_high, other_low - high)))

@@ -44,6 +44,7 @@ NOWHERE = GHOSTS / GHOST_AREA  # their density
 # a half of a circle would speak for whatever shape closes that half on the shortest way.
 OUTLINE_LENGTH = 0.5
 
+DEEP_CELLS, DEEP_NOISE = 1.25, 5.0  # inside: farther than cells and noise, times its deviation, bring a point
 NEIGHBOURS = 10  # enough for a line with its spread, few enough for a curve to be straight
 ENOUGH_PLACES = 250  # they tell whether there is any noise
 
@@ -72,6 +73,15 @@ def noise_of(spread: float) -> float:
     (0.002, 0.0)
     """
     return float(np.sqrt(max(spread**2 - LEAST_SPREAD**2, 0.0) / MEAN_ACROSS))
+
+
+def depth_of(spread: float) -> float:
+    """Return how deep inside an outline cells and noise bring points at most, metres: no beam gets there.
+
+    >>> round(depth_of(LEAST_SPREAD) / CELL, 2)
+    1.25
+    """
+    return DEEP_CELLS * CELL + DEEP_NOISE * noise_of(spread)
 
 
 def shared_rounding(spread: float) -> float:
