@@ -24,12 +24,12 @@ from .figures import Figure, mean, number, share, share_of_things
 from .judging import FEW, same_name, sure_and_wrong
 
 MM = 0.001
-# Weighted accuracy within 5 mm before the estimator knew of an open world: what must not be lost.
+# Weighted accuracy within 5 mm that must not be lost, by the noise in mm: the low end of the interval that there was
+# before the estimator knew of an open world (500 maps, seed 0), 0.998 where all was right, and at 10 mm 0.01 less.
 BEFORE = {
-    **{("suite", mm): least for mm, least in ((0, 1.0), (1, 1.0), (2, 1.0), (5, 0.997), (10, 0.944))},
-    **{("free", mm): least for mm, least in ((0, 1.0), (1, 1.0), (2, 1.0), (5, 0.987), (10, 0.926))},
+    "suite": {0: 0.998, 1: 0.998, 2: 0.998, 5: 0.9954, 10: 0.9424 - 0.01},
+    "free": {0: 0.998, 1: 0.998, 2: 0.998, 5: 0.9867, 10: 0.9236 - 0.01},
 }
-WITHIN = 0.01  # of the figure before, at 10 mm
 CERTAIN = {0: 0.99, 2: 0.98, 5: 0.93}  # share of ordinary shapes, by the noise in mm
 CERTAIN_POLYGONS, LARGE = 0.9, 0.08  # share; m from end to end
 WHOLE = 0.9  # share of each side that has a point near it, where the whole outline was seen
@@ -37,11 +37,11 @@ WHOLE = 0.9  # share of each side that has a point near it, where the whole outl
 
 def lost(n: int, seed: int) -> Iterator[Figure]:
     """Nothing lost: suite and free maps against noise, spurious returns, narrow gaps, partial views."""
-    for (board, mm), before in BEFORE.items():
-        name = f"{board} maps, {mm} mm"
-        yield from weighted(name, Condition(board, noise_std=mm * MM), n, seed, before - WITHIN * (mm == 10))
-    yield from weighted("free maps, 2 % spurious", Condition(spurious=0.02), n, seed)
-    yield from weighted("free maps, gaps of 3 cm", Condition(gap=0.03), n, seed)
+    for board, least in BEFORE.items():
+        for mm in least:
+            yield from weighted(f"{board} maps, {mm} mm", Condition(board, noise_std=mm * MM), n, seed, least[mm])
+    yield from weighted("free maps, 2 % spurious", Condition(spurious=0.02), n, seed, BEFORE["free"][0])
+    yield from weighted("free maps, gaps of 3 cm", Condition(gap=0.03), n, seed, BEFORE["free"][0])
     for line in run_partial(n, noises=(0.0, 0.002, 0.005), seed=seed, jobs=1, progress=False).lines:
         name = f"partial views, {line.noise_std / MM:g} mm"
         for what, value, k in (
