@@ -784,6 +784,44 @@ def test_what_the_robot_sees_is_what_one_s_own_step_makes_of_it():
     assert {one.shape.radius for one in scene.state.found if one.kind == "circle"} == {0.2}
 
 
+def invented(scene):
+    """The share of all that is drawn as an outline that lies farther than 2 cm from every true outline."""
+    places = np.vstack([stretch for shape in scene.state.last.drawn["shapes"] for _, stretch in shape["stretches"]])
+    apart = [np.abs(shape.signed_distance(places / 10_000)) for shape in scene.state.world.shapes]
+    return np.mean(np.min(apart, axis=0) > 0.02)
+
+
+def turned(points):
+    line = pk.fit_line(points)
+    return line.angle + 0.3, line.offset
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ({"segment": lambda points, _: pk.link(points)}, {"segment": lambda points, _: (points[:, 0] > 0).astype(int)}),
+        (
+            {"segment": lambda points, _: pk.kmeans(points, 4, rng=0)},
+            {"segment": lambda points, _: np.arange(len(points)) % 3},
+        ),
+        ({"fit_line": pk.fit_line}, {"fit_line": turned}),
+        ({"fit_circle": pk.fit_circle}, {"fit_circle": lambda points: (*points.mean(axis=0), 0.2)}),
+    ],
+    ids=["linking", "K-Means", "line", "circle"],
+)
+def test_a_wrong_step_invents_what_is_not_there(right, wrong):
+    """The same scans with a right step and with a wrong one."""
+    world = pk.random_world(4, kinds=["circle", "circle", "rectangle", "triangle"], rng=2)
+    shares = []
+    for steps in (right, wrong):
+        scene = own_scene(world, **steps)
+        scene.state._mapper.add(pk.scan(world, pk.teleport_poses(world)))
+        scene.state.finish()
+        shares.append(invented(scene))
+    assert shares[0] == 0.0
+    assert shares[1] > 0.1
+
+
 def test_a_segmentation_of_one_s_own_is_not_mended(world):
     """Grouped left and right of the middle, four shapes are never found; a second opinion would find them."""
     halves = pk.Steps(segment=lambda points, _: (points[:, 0] > 0).astype(int))

@@ -507,6 +507,12 @@ def test_a_thing_is_moved_while_noise_keeps_the_kernel_busy(context, folder, scr
 OWN = {
     "a right fit_circle": ("def mine(points):\n    return pk.fit_circle(points)", "fit_circle"),
     "a wrong fit_circle": ("def mine(points):\n    return (*points.mean(axis=0), 0.12)", "fit_circle"),
+    "a right segment": ("def mine(points, n):\n    return pk.link(points)", "segment"),
+    "a right fit_line": ("def mine(points):\n    return pk.fit_line(points)", "fit_line"),
+    "a wrong fit_line": (
+        "def mine(points):\n    line = pk.fit_line(points)\n    return line.angle + 0.3, line.offset",
+        "fit_line",
+    ),
     "a wrong segment": ("def mine(points, n):\n    return (points[:, 0] > 0.2).astype(int)", "segment"),
     "a slow fit_line": (
         "import time\ndef mine(points):\n    until = time.monotonic() + 1\n    while time.monotonic() < until:\n"
@@ -518,6 +524,7 @@ OWN = {
 OWN_WORLD = "pk.World([pk.Circle((0.2, 0.12), 0.06), pk.Polygon([(0.1, -0.2), (0.3, -0.2), (0.3, -0.1), (0.1, -0.1)])])"
 TROUBLES = {
     "a wrong fit_circle": "fit_circle returns a circle that lies on none of its points; the drive goes on.",
+    "a wrong fit_line": "",  # told or not: some points lie on lines that are turned
     "a slow fit_line": "fit_line takes ",
     "a fit_circle that raises": "fit_circle raises TypeError",
 }
