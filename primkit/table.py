@@ -20,7 +20,9 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 import textwrap
+import unicodedata
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -28,6 +30,7 @@ from itertools import pairwise
 from typing import Any
 
 NOTE_WIDTH = 80  # letters in a line of a plain terminal
+NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")
 CSV_DIGITS = 6  # after the point: far more than 34 maps can tell, and the same on every machine
 
 
@@ -110,9 +113,22 @@ def count(n: int, noun: str) -> str:
 
 
 def as_csv(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    """Return rows as CSV: numbers with at most six digits after the point, nothing for None."""
+    """Return rows as CSV: numbers with at most six digits after the point, nothing for None, no formulas."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(header)
-    writer.writerows([round(v, CSV_DIGITS) if isinstance(v, float) else v for v in row] for row in rows)
+    writer.writerows([_cell_of(value) for value in row] for row in rows)
     return buffer.getvalue()
+
+
+def _cell_of(value: Any) -> Any:
+    r"""Return a value that no spreadsheet takes for a formula: names of maps are anybody's, words of answers too.
+
+    >>> [_cell_of(value) for value in ("=1+1", "\n=1+1", "\uff1d1+1", "-", "-0.5", -0.12345678)]
+    ["'=1+1", "'\n=1+1", "'＝1+1", '-', '-0.5', -0.123457]
+    """
+    if isinstance(value, float):
+        return round(value, CSV_DIGITS)
+    begins = unicodedata.normalize("NFKC", value).lstrip() if isinstance(value, str) else ""
+    formula = len(begins) > 1 and begins[0] in "=+-@" and not NUMBER.fullmatch(begins)
+    return f"'{value}" if formula else value

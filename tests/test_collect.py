@@ -2,20 +2,21 @@
 
 import json
 import os
+import re
 import struct
-import zipfile
 from contextlib import suppress
 from datetime import UTC, datetime, timedelta
 
 import pytest
 
 from primkit.course import archives
-from primkit.course.collect import collect, table_of, versions_of
+from primkit.course.collect import collect, table_of
 from primkit.course.course import ASSIGNMENTS, new_course
 from primkit.course.handed_in import file_faults, tree_hash
 from primkit.course.late import Late
 from primkit.course.lms import sender_of
 from primkit.course.students import Student, called, decoded, meant_by, read_students
+from primkit.course.versions import versions_of
 from tests.downloads import canvas, clock, edition_3, exchange, mail, moodle, packed, with_outputs
 from tests.submissions import read
 from tests.test_teaching import teach
@@ -279,7 +280,7 @@ def test_it_can_be_run_at_any_time(course):
     assert placed(course, download(course, again, "again.zip"))[0] == {"ada": "one"}
     assert len(versions_of(course, PS)["ada"]) == 3
     row = table_of(course, PS, collect(course, PS, [first])[0])[1]
-    assert row == ("ada", "ps1.ipynb", "2026-03-03 12:00", "2 earlier kept")
+    assert row == ("ada", "ps1.ipynb", "packed 2026-03-03", "2 earlier kept")
 
 
 def test_what_was_mended_by_hand_stays(course):
@@ -511,8 +512,8 @@ def test_the_command_ends_with_a_table(course):
     }
     said = teach(course.root, "collect", PS, download(course, files))
     assert "ps1: 1 student\n" in said
-    assert "ada           PS1_Ada.ipynb  2026-03-01 12:00  new\n" in said
-    assert "anna_mueller  -                                nothing handed in\n" in said
+    assert re.search(r"^ada +PS1_Ada\.ipynb  packed 2026-03-01  new$", said, re.MULTILINE)
+    assert re.search(r"^anna_mueller  - +nothing handed in$", said, re.MULTILINE)
     assert "1 file without a place:\n" in said
     assert "Moodle's name 'Grace Hopper' is nobody's in the list of students: put it into a folder with the id" in said
 
@@ -524,10 +525,52 @@ def test_without_a_list_nobody_is_placed(tmp_path):
     assert "there is no nowhere.zip to collect from" in teach(made.root, "collect", PS, "nowhere.zip", code=2)
 
 
-def test_the_clock_of_an_archive_is_this_computer_s(course):
-    files = {moodle("Ada Lovelace", 1, "ps1.ipynb"): notebook("a")}
-    collect(course, PS, [download(course, files)])
-    when = datetime.fromisoformat(versions_of(course, PS)["ada"][0].when)
-    assert when.timestamp() == clock(2026, 3, 1, 12)
-    with zipfile.ZipFile(course.root.parent / "download.zip") as archive:
-        assert archive.infolist()[0].date_time == (2026, 3, 1, 12, 0, 0)
+def by_moodle(hours, course):
+    """Collect three of Moodle's, of which one came so many hours before the others; return what is told of it."""
+    (course.root / "course.toml").write_text("[due]\nps1 = 2026-03-01T10:00:00\n")
+    files = {
+        moodle(name, number, "ps1.ipynb"): (notebook(name), (2026, 3, 2, 20 - hours * (number == 1), 0, 0))
+        for number, name in enumerate(("Ada Lovelace", "Li Wu", "Jörg Öz"), 1)
+    }
+    (ada,) = (row for row in table_of(course, PS, collect(course, PS, [download(course, files)])[0]) if row[0] == "ada")
+    return ada[2:]
+
+
+def test_the_time_at_which_an_lms_has_packed_an_archive_makes_nobody_late(course):
+    """Canvas and older Moodles write into an archive when they have made it, alike for all."""
+    assert by_moodle(0, course) == ("packed 2026-03-02", "new")
+
+
+def test_times_that_differ_are_those_of_handing_in(course):
+    assert by_moodle(3, course) == ("2026-03-02 17:00", "new; 1 d 7 h late")
+    assert datetime.fromisoformat(versions_of(course, PS)["ada"][0].when).timestamp() == clock(2026, 3, 2, 17)
+
+
+def test_moodle_s_worksheet_says_when_each_was_handed_in(course):
+    by_moodle(0, course)
+    sheet = course.root.parent / "Grades-C-PS1.csv"
+    sheet.write_text(
+        "\ufeffIdentifier,Full name,Status,Grade,Last modified (submission)\n"
+        'Participant 1,Ada Lovelace,Submitted,,"Sunday, 1 March 2026, 9:30 AM"\n'
+        'Participant 2,Li Wu,Submitted,,"Sunday, 1 March 2026, 1:30 PM"\n'
+        "Participant 3,Jörg Öz,No submission,,-\n",
+        encoding="utf-8",
+    )
+    done, unplaced = collect(course, PS, [sheet, course.root.parent / "download.zip"])
+    told = {row[0]: row[2:] for row in table_of(course, PS, done)}
+    assert (told["ada"], told["0042"]) == (("2026-03-01 09:30", ""), ("2026-03-01 13:30", "4 h late"))
+    assert told["jörg"] == ("packed 2026-03-02", "")
+    assert unplaced == []
+
+
+def test_a_student_cannot_set_the_clock_back(course):
+    (course.root / "course.toml").write_text("[due]\nps1 = 2026-03-01T10:00:00\n")
+    early = packed(
+        {"ps1.ipynb": notebook("x"), "timestamp.txt": b"2026-02-01 10:00:00 UTC"}, when=(2026, 2, 1, 1, 0, 0)
+    )
+    files = {
+        moodle("Ada Lovelace", 1, "mine.zip"): (early, (2026, 3, 2, 13, 0, 0)),
+        moodle("Li Wu", 2, "ps1.ipynb"): (notebook("b"), (2026, 3, 1, 9, 0, 0)),
+    }
+    told = {row[0]: row[2:] for row in table_of(course, PS, collect(course, PS, [download(course, files)])[0])}
+    assert told["ada"] == ("2026-03-02 13:00", "new; 1 d 3 h late")

@@ -188,7 +188,7 @@ def test_everybody_is_graded_on_their_own_map(course):
 def test_a_written_answer_waits_for_its_teacher(course):
     made, said = course
     assert "1 written answer waits to be marked by hand: in formgrader" in said["grade"]
-    assert "`nbgrader generate_feedback map --force`" in said["grade"]
+    assert "`primkit teach hand-back map`" in said["grade"]
     pages = {name: (made.root / "feedback" / name / "map" / "map.html").read_text("utf-8") for name in ("ada", "bob")}
     assert "Not yet marked: why. The score does not count that yet." in pages["ada"]
     assert '<a href="#why">Written response</a> (not yet marked, of 2.0)' in pages["ada"]

@@ -20,9 +20,10 @@ import pytest
 from primkit.__main__ import main
 from primkit.course.checking import check
 from primkit.course.course import ASSIGNMENTS, Course, new_course
-from primkit.course.grade import Journal, _grade_one
+from primkit.course.grade import _alone, _grade_one
+from primkit.course.graded import Graded, Journal
 from primkit.course.grading import MIME
-from primkit.course.handed_in import file_faults, tree_hash
+from primkit.course.handed_in import Fault, file_faults, tree_hash
 from primkit.course.running import nbgrader
 from tests.submissions import ProblemSet, about, answers_of, read
 
@@ -200,11 +201,11 @@ def test_a_course_that_was_made_before_takes_edited_cells_too(graded):
     older = course.parent / "older"
     shutil.copytree(course, older)
     config = (older / "nbgrader_config.py").read_text("utf-8")
-    ours = re.compile(r"^c\.(Autograde\.sanitize_preprocessors|WholeNotebook\.course) = .*\n", re.MULTILINE)
+    ours = re.compile(r"^c\.(Autograde\.sanitize|WholeNotebook|GenerateFeedback|AssignLate).* = .*\n", re.MULTILINE)
     (older / "nbgrader_config.py").write_text(ours.sub("", config))
-    verdict, said = _grade_one(Course(older), PS, "edited", Journal(Course(older), PS), again=True)  # and no feedback
-    assert verdict == "graded", said
-    assert "ps1-setup: was missing" in said
+    done = _grade_one(Course(older), PS, "edited", Journal(Course(older), PS), again=True)
+    assert done.verdict == "graded", done.line
+    assert "ps1-setup: was missing" in done.line
 
 
 def test_a_released_notebook_is_a_student_s(graded):
@@ -430,6 +431,14 @@ def test_all_is_there_in_a_new_course(course):
     assert faults(course) == {}
 
 
+def with_points(root, mark, points):
+    """Give a cell of the source other points, as with JupyterLab's Create Assignment."""
+    path = root / "source" / PS / f"{PS}.ipynb"
+    notebook = read(path)
+    next(about(cell) for cell in notebook["cells"] if about(cell).get("grade_id") == mark)["points"] = points
+    path.write_text(json.dumps(notebook), "utf-8")
+
+
 BREAK = {
     "salt.txt": (lambda root: (root / "salt.txt").unlink(), "salt.txt", "a new salt makes new maps"),
     "a short salt": (lambda root: (root / "salt.txt").write_text("short"), "salt.txt", "."),
@@ -439,6 +448,21 @@ BREAK = {
     "config": (lambda root: (root / "nbgrader_config.py").unlink(), "course folder", "new-course"),
     "limits": (lambda root: (root / "nbgrader_config.py").write_text(""), "nbgrader_config.py", "CarefulExecute"),
     "students": (lambda root: (root / "students.csv").write_text("name\nada\n"), "students.csv", "the line id,"),
+    "points": (
+        lambda root: with_points(root, "sonar_reading-hidden", 6),
+        "source/ps1, sonar_reading-hidden",
+        "give 4.0",
+    ),
+    "settings": (
+        lambda root: (root / "course.toml").write_text("[due]\nps1 = 3\n"),
+        "course.toml",
+        "at a day and a time",
+    ),
+    "no such set": (
+        lambda root: (root / "course.toml").write_text("[due]\nps7 = 2026-03-01T10:00:00"),
+        "course.toml",
+        "ps7",
+    ),
     "Polish": (lambda root: (root / "students.csv").write_bytes(b"id\n\xb3\n"), "students.csv", "CSV UTF-8"),
     "an id": (lambda root: (root / "students.csv").write_text("id\n\nb\na/b\n"), "students.csv", "in line 4"),
     "twice": (lambda root: (root / "students.csv").write_text("id\nada\nada\n"), "students.csv", "once"),
@@ -548,19 +572,33 @@ def test_a_hash_sees_every_change(tmp_path):
     assert tree_hash(tmp_path) in seen
 
 
-def test_the_pack_s_expression_places_the_files_of_a_class():
-    page = (ROOT / "notebooks" / "teacher" / "running.md").read_text(encoding="utf-8")
-    expression = re.search(r'named_regexp = \(\n +r"(.*)"', page)[1]
-    for file, student, notebook in (
-        ("s002_ps1.ipynb", "s002", "ps1"),
-        ("s002_12_ps1.ipynb", "s002", "ps1"),
-        ("s002_12_ps1 (1).ipynb", "s002", "ps1"),
-        ("s002_ps1-2.ipynb", "s002", "ps1"),
-        ("s.b@x_a_b_09_your_own_map(3).ipynb", "s.b@x", "09_your_own_map"),
-    ):
-        found = re.match(expression, f"extracted/{file}")
-        assert (found["student_id"], found["file_id"]) == (student, notebook)
-    assert not re.match(expression, "extracted/s002_ps1_notes.ipynb")
+JOURNALS = {
+    "cut": '{"ada": {"hash": "x", "gra',
+    "a number": "5",
+    "an entry that is none": '{"ada": 5}',
+    "faults that are none": '{"ada": {"hash": "", "graded": true, "faults": [5]}}',
+}
+
+
+@pytest.mark.parametrize("text", JOURNALS.values(), ids=JOURNALS)
+def test_a_journal_that_is_none_is_refused_by_its_name(course, text):
+    (course.reports(PS) / "graded.json").write_text(text)
+    with pytest.raises(ValueError, match=r"^graded\.json: "):
+        Journal(course, PS)
+
+
+def test_a_second_grader_waits_and_loses_nothing(course):
+    done = Graded("ada", "graded", "", "x")
+    with _alone(course, PS):
+        with pytest.raises(ValueError, match="ps1 is being graded by another command: wait"), _alone(course, PS):
+            pass
+        Journal(course, PS).write(done)
+    with _alone(course, PS):
+        journal = Journal(course, PS)
+        journal.write(Graded("bob", "not graded", "", "y", (Fault("bob", "-", "n", "s"),)))
+    assert {*Journal(course, PS).entries} == {"ada", "bob"}
+    assert journal.knows("ada", "x")
+    assert not journal.knows("bob", "y")
 
 
 def test_the_course_is_the_folder_that_is_given(tmp_path):

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import argparse
 import os
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from ..course.untrusted import UNTRUSTED_WORDS
 from ..table import Table, count
-from .words import LOOK, Parser, path, say
+from .words import LOOK, Parser, path, say, whole
 
 TEACH_TEXT = "run a course: release problem sets, grade them, see how the class did"
 TEACH_EXAMPLES = """\
@@ -56,7 +57,10 @@ def teach_options(parser: Parser) -> None:
     grade = command("grade", _grade, "grade what was handed in, each submission on its own", UNTRUSTED_WORDS, ps=True)
     grade.add_argument("--again", action="store_true", help="grade also what has not changed since")
     grade.add_argument("--student", metavar="ID", action="append", default=[], help="only this one; may be repeated")
+    grade.option("--at-once", "N", partial(whole, least=1, most=64), 0, "how many at once", shown="cores, and memory")
     command("report", _report, "say how the class did; write tables, a figure and nbgrader's export", ps=True)
+    command("hand-back", _hand_back, "make feedback with your comments, and files for Moodle and Canvas", ps=True)
+    command("similar", _similar, "find pairs of submissions that are more alike than the task makes them", ps=True)
     leaks = command("leaks", _leaks, "look for solutions in what students get")
     leaks.add_argument(
         "paths", metavar="PATH", nargs="*", type=path, help="notebooks, wheels, folders (default: release)"
@@ -122,7 +126,7 @@ def _grade(arguments: argparse.Namespace) -> None:
 
     course = _course(arguments)
     name = course.set(arguments.name)
-    faults = grade(course, name, again=arguments.again, only=arguments.student, say=say)
+    faults = grade(course, name, again=arguments.again, only=arguments.student, at_once=arguments.at_once or 0, say=say)
     if faults:
         say(f"\n{count(len(faults), 'thing')} to look at:")
         for fault in faults:
@@ -135,6 +139,21 @@ def _report(arguments: argparse.Namespace) -> None:
 
     course = _course(arguments)
     for line in report(course, course.set(arguments.name)):
+        say(line)
+
+
+def _hand_back(arguments: argparse.Namespace) -> None:
+    from ..course.handing_back import hand_back
+
+    course = _course(arguments)
+    hand_back(course, course.set(arguments.name), say=say)
+
+
+def _similar(arguments: argparse.Namespace) -> None:
+    from ..course.similar import report_pairs
+
+    course = _course(arguments)
+    for line in report_pairs(course, course.set(arguments.name)):
         say(line)
 
 

@@ -137,10 +137,9 @@ class _Unpacking:
                 except BROKEN as error:
                     yield Refused("/".join((*parts, *inner)), f"cannot be unpacked: {error}")
                     continue
-                written = _time(member)
-                yield from self.file(
-                    (*parts, *inner), copy, written if written > UNKNOWN_TIME else when, mail, depth + 1
-                )
+                # The times in an archive within another one are its student's own.
+                written = _time(member) if depth == 0 else 0.0
+                yield from self.file((*parts, *inner), copy, max(written, 0.0) or when, mail, depth + 1)
 
     def _mail(self, parts: tuple[str, ...], path: Path, depth: int) -> Iterator[Found | Refused]:
         message = email.message_from_bytes(bounded_read(path, MOST_INNER), policy=email.policy.default)

@@ -6,9 +6,11 @@ Out: a ``Finding`` for each thing that was looked at: fine, or what is wrong and
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import sqlite3
+import subprocess
 import sys
 import sysconfig
 import tempfile
@@ -17,7 +19,7 @@ from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 
-from .course import CONFIG, COPIED_FOLDERS, STUDENTS, Course
+from .course import CONFIG, COPIED_FOLDERS, SETTINGS, STUDENTS, Course
 from .handed_in import strangers
 from .moved import old_names
 from .students import SAVE_AS, read_students
@@ -46,7 +48,8 @@ def check(course: Course, environment: Path = ENVIRONMENT) -> list[Finding]:
     """Look at everything that a course needs."""
     installed = *_python(), *_packages(environment), *_commands(), *_kernel()
     moved = (Finding(old.file, f"names {old.name}, which has moved", old.mend) for old in old_names(course))
-    return [*installed, *_folder(course), *_sources(course), *moved, *_secrets(course), *_gradebook(course)]
+    looked_at = *_folder(course), *_sources(course), *moved, *_points(course), *_settings(course), *_secrets(course)
+    return [*installed, *looked_at, *_gradebook(course)]
 
 
 def _python() -> Iterator[Finding]:
@@ -127,6 +130,65 @@ def _sources(course: Course) -> Iterator[Finding]:
     if (course.root / "source").is_dir():
         sets = course.sets()
         yield Finding("problem sets", ", ".join(sets) or "none", "copy them into source/", bool(sets))
+
+
+# Run apart, as the teacher's own tests are: for each hidden test its place, its cell's points and those that it gives.
+COUNT_POINTS = """\
+import ast, json, re, sys
+from pathlib import Path
+for path in sorted(Path("source").glob("*/*.ipynb")):
+    for cell in json.loads(path.read_text("utf-8"))["cells"]:
+        about, source = cell["metadata"].get("nbgrader", {}), "".join(cell["source"])
+        task = re.search(r"^([\\w.]+)\\.mark\\(", source, re.MULTILINE)
+        if not (about.get("grade") and task):
+            continue
+        scope = {}
+        try:
+            body = [node for node in ast.parse(source).body if isinstance(node, (ast.Import, ast.ImportFrom))]
+            exec(compile(ast.Module(body, []), "imports", "exec"), scope)
+            gives = float(eval(task[1], scope).points)
+        except Exception as error:
+            gives = f"{type(error).__name__}: {error}"
+        print(json.dumps([f"source/{path.parent.name}, {about['grade_id']}", about.get("points"), gives]))
+"""
+
+
+def _points(course: Course) -> Iterator[Finding]:
+    """Compare the points of hidden cells with those that their tests give."""
+    if not all((course.root / name).is_dir() for name in COPIED_FOLDERS):
+        return
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, (str(course.root), *sys.path)))}
+    done = subprocess.run(
+        [sys.executable, "-c", COUNT_POINTS],
+        cwd=course.root,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=600,
+    )
+    lines = [json.loads(line) for line in done.stdout.splitlines()]
+    for place, cell, gives in lines:
+        if gives != cell:
+            found = f"the cell has {cell} points, its hidden tests give {gives}"
+            yield Finding(place, found, "let the parts in grader/ sum up to the cell's points, or change the cell's")
+    if done.returncode:
+        yield Finding("grader/", done.stderr.strip().rpartition("\n")[2], "mend it: the hidden tests cannot be read")
+    elif all(gives == cell for _, cell, gives in lines):
+        yield Finding("points", f"{len(lines)} hidden tests give what their cells say", fine=True)
+
+
+def _settings(course: Course) -> Iterator[Finding]:
+    """Read due dates and the late rule."""
+    from .late import Late
+
+    try:
+        late = Late.of(course.root)
+    except ValueError as error:
+        yield Finding(SETTINGS, str(error).removeprefix(f"{SETTINGS}: "), "write it as in a new course's file")
+        return
+    for name in sorted({*late.due, *(name for name, _ in late.later)} - {*course.sets()}):
+        yield Finding(SETTINGS, f"there is no problem set {name}", "write its folder's name in source/")
+    yield Finding(SETTINGS, f"{len(late.due)} due dates", fine=True)
 
 
 def _secrets(course: Course) -> Iterator[Finding]:

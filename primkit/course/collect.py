@@ -10,59 +10,27 @@ notebook is found by the cells it holds, whatever its name; files beside that go
 
 from __future__ import annotations
 
-import hashlib
-import json
-import shutil
 import tempfile
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import suppress
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
-from ..arguments import short
-from ..formats.files import bounded_read, naming, write_atomically
-from ..formats.values import parsed
+from nbgrader.utils import parse_utc
+
 from .archives import Found, Refused, unpack
 from .course import Course
-from .handed_in import tree_hash
-from .late import NBGRADER_TIME, Late
-from .lms import Sender, sender_of
+from .late import Late
+from .lms import Sender, sender_of, worksheet_times
 from .notebooks import Cells, cells_of, slim
 from .students import Student, called, meant_by
+from .versions import TIMESTAMP, Book, Version
 
 MOST_BESIDE = 32 * 2**20  # bytes of the files beside a notebook, all together
 MOST_FILES = 200  # of them
 REMEDY = "put it into a folder with the id as its name"
-TIMESTAMP = "timestamp.txt"  # nbgrader's own: beside a notebook, the time it came
-
-
-@dataclass
-class Version:
-    """One submission of one student: when it came, from where, and what is to be known about it."""
-
-    student: str
-    when: str  # by ISO 8601, in UTC; empty if nothing tells
-    source: str
-    notebook: str  # the name it came with
-    folder: str  # in collected/
-    hash: str
-    sender: dict[str, str] = field(default_factory=dict)
-    notes: list[str] = field(default_factory=list)
-
-    @property
-    def order(self) -> tuple[str, str]:
-        """The latest is the greatest; of the same time, Canvas's later attachment."""
-        return self.when, self.sender.get("attachment", "").zfill(20)
-
-
-@dataclass(frozen=True)
-class Unplaced:
-    """A file that could not be placed, and why."""
-
-    place: str
-    says: str
+PACKING_SECONDS = 3600  # the times in an LMS's archive that lie within are when it was made
 
 
 @dataclass(frozen=True)
@@ -74,7 +42,7 @@ class Collected:
     new: bool
 
 
-def collect(course: Course, name: str, paths: Iterable[Path]) -> tuple[list[Collected], list[Unplaced]]:
+def collect(course: Course, name: str, paths: Iterable[Path]) -> tuple[list[Collected], list[Refused]]:
     """Place what lies in these files and folders; return who has handed in until now, and what could not be placed.
 
     Raises ValueError if a path is not there, or the list of students is empty or cannot be read.
@@ -82,19 +50,23 @@ def collect(course: Course, name: str, paths: Iterable[Path]) -> tuple[list[Coll
     students = course.roster()
     if not students:
         raise ValueError(f"the list of students is empty: fill it in, for they are found by it ({course.root})")
-    book = _Book(course, name)
-    unplaced: list[Unplaced] = []
+    book = Book(course, name)
+    unplaced: list[Refused] = []
+    sheets: dict[str, datetime] = {}
     with tempfile.TemporaryDirectory(prefix="primkit-", ignore_cleanup_errors=True) as scratch:
         submissions: dict[tuple[str, ...], list[_File]] = defaultdict(list)
         for found in unpack(paths, Path(scratch)):
+            if isinstance(found, Found) and (sheet := worksheet_times(found.path)):
+                sheets |= sheet
+                continue
             file = found if isinstance(found, Refused) else _whose(found, students)
             if isinstance(file, _File):
                 submissions[file.key].append(file)
             else:
-                unplaced.append(Unplaced(file.place, file.says))
-        known = cells_of(course)
+                unplaced.append(file)
+        known, clock = cells_of(course), _Clock(submissions.values(), sheets)
         for files in submissions.values():
-            unplaced += _keep(book, files, known)
+            unplaced += _keep(book, files, known, clock)
     people = {student.id: student for student in students}
     done = [
         Collected(people.get(student, Student(student)), versions, book.hand_over(student))
@@ -117,7 +89,7 @@ class _File:
     sender: Sender | None
 
 
-def _whose(found: Found, students: Sequence[Student]) -> _File | Unplaced:
+def _whose(found: Found, students: Sequence[Student]) -> _File | Refused:
     """Return a file with its student: the outermost name that means somebody decides, whatever lies within.
 
     Only where it does no more than mention a student, as a download may by chance, no other name may contradict it.
@@ -134,7 +106,7 @@ def _whose(found: Found, students: Sequence[Student]) -> _File | Unplaced:
         if meant or sender:
             claims.append((place, meant, sender))
     if not claims:
-        return Unplaced(found.place, f"names nobody in the list of students: {REMEDY}")
+        return Refused(found.place, f"names nobody in the list of students: {REMEDY}")
     place, meant, sender = claims[0]
     below = ((sender.rest,) if sender and sender.rest else ()) + parts[place + 1 :]
     if not sender and not called(parts[place], students) and (parts[-1].endswith(".ipynb") or claims[-1][2]):
@@ -159,10 +131,10 @@ def _decided(
     below: tuple[str, ...],
     sender: Sender | None,
     by: str,
-) -> _File | Unplaced:
+) -> _File | Refused:
     if len(meant) != 1:
         who = f"may mean {' or '.join(each.id for each in meant)}" if meant else "is nobody's in the list of students"
-        return Unplaced(found.place, f"{by} {who}: {REMEDY}")
+        return Refused(found.place, f"{by} {who}: {REMEDY}")
     student, again = meant[0].id, sender.number or sender.when if sender else ""
     return _File(student, (*outer, student, again), below or found.parts[-1:], found, sender)
 
@@ -170,21 +142,22 @@ def _decided(
 # --- what it holds ------------------------------------------------------------------------------------------
 
 
-def _keep(book: _Book, files: Sequence[_File], known: Cells) -> Iterator[Unplaced]:
+def _keep(book: Book, files: Sequence[_File], known: Cells, clock: _Clock) -> Iterator[Refused]:
     """Keep a submission as a version of its student's, and yield what of it has no place."""
     candidates = []
     for file in files:
         if file.found.parts[-1].lower().endswith(".ipynb"):
             read = slim(file.found.path, known)
             if read.set and read.set != book.name:
-                says = f"is {read.set}: `primkit teach collect {read.set}` places it"
-                yield Unplaced(file.found.place, says)
+                if not (file.sender and file.sender.lms == "exchange"):  # which holds all sets
+                    says = f"is {read.set}: `primkit teach collect {read.set}` places it"
+                    yield Refused(file.found.place, says)
             else:
                 candidates.append((read, file))
     wanted = {read.notebook for read, _ in candidates if read.notebook} or {known.only(book.name)}
     if not candidates:
         if not any(file.found.parts[-1].lower().endswith(".ipynb") for file in files):
-            yield Unplaced(files[0].found.place, f"holds no notebook ({files[0].student})")
+            yield Refused(files[0].found.place, f"holds no notebook ({files[0].student})")
         return
     contents: dict[str, bytes] = {}
     notes: list[str] = []
@@ -208,23 +181,35 @@ def _keep(book: _Book, files: Sequence[_File], known: Cells) -> Iterator[Unplace
             others = ", ".join(sorted(other.below[-1] for _, other in fitting if other is not file))
             notes.append(f"{file.below[-1]} of {len(fitting)} notebooks, not {others}")
     beside, more = _beside(chosen[0], files)
-    when = _when(files, chosen)
-    book.add(chosen[0], when, contents, beside, [*notes, *more])
+    main = chosen[0]
+    when, packed = (told.isoformat(timespec="seconds") if told else "" for told in clock.times(files, chosen))
+    sender = {} if main.sender is None else {what: str(told) for what, told in asdict(main.sender).items() if told}
+    version = Version(main.student, when, packed, main.found.place, main.below[-1], sender, [*notes, *more])
+    book.add(version, {**beside, **contents})
 
 
-def _when(files: Sequence[_File], chosen: Sequence[_File]) -> datetime | None:
-    """Return when a submission came: as the exchange says, else by its files."""
-    for file in files:
-        told = file.sender.when if file.sender else ""
-        if not told and file.found.parts[-1] == TIMESTAMP:
-            told = file.found.path.read_bytes()[:100].decode("ascii", "replace").strip()
-        if told:
-            from nbgrader.utils import parse_utc
+class _Clock:
+    """Tells when a submission came. Canvas and many a Moodle write into an archive only when that was made."""
 
-            with suppress(ValueError, OverflowError):
-                return parse_utc(told).replace(tzinfo=UTC)
-    latest = max(file.found.when for file in chosen)
-    return datetime.fromtimestamp(latest, UTC) if latest else None
+    def __init__(self, submissions: Iterable[Sequence[_File]], sheets: dict[str, datetime]) -> None:
+        self.sheets, times = sheets, defaultdict[str, list[float]](list)
+        for file in (file for files in submissions for file in files if file.sender):
+            times[file.found.parts[0]].append(file.found.when)
+        self.own = {archive for archive, found in times.items() if max(found) - min(found) > PACKING_SECONDS}
+
+    def times(self, files: Sequence[_File], chosen: Sequence[_File]) -> tuple[datetime | None, datetime | None]:
+        """Return when files were handed in, as an LMS, an e-mail or they themselves say; and what they say."""
+        latest = max(file.found.when for file in chosen)
+        packed = datetime.fromtimestamp(latest, UTC) if latest else None
+        sender = files[0].sender
+        if sender is not None:
+            if sender.when:
+                return parse_utc(sender.when).replace(tzinfo=UTC), packed
+            if sender.lms == "moodle" and sender.number in self.sheets:
+                return self.sheets[sender.number], packed
+            if sender.lms == "canvas" or files[0].found.parts[0] not in self.own:
+                return None, packed
+        return packed, packed
 
 
 def _beside(notebook: _File, files: Sequence[_File]) -> tuple[dict[str, bytes], list[str]]:
@@ -248,106 +233,7 @@ def _plain(part: str) -> bool:
     return part.isprintable() and part == part.strip(" .") and len(part) < 100 and not set(part) & set('\\/:*?"<>|')
 
 
-# --- what is kept -------------------------------------------------------------------------------------------
-
-FIELDS = {*Version.__dataclass_fields__}
-
-
-class _Book:
-    """What was collected of a problem set, in a file and folders; written whole after each change."""
-
-    def __init__(self, course: Course, name: str) -> None:
-        self.course, self.name = course, name
-        self.root = course.root / "collected" / name
-        self.versions = versions_of(course, name)
-
-    def add(
-        self, file: _File, when: datetime | None, contents: dict[str, bytes], beside: dict[str, bytes], notes: list[str]
-    ) -> None:
-        """Keep a version, unless it is here already."""
-        digest = hashlib.sha256()
-        for path, content in sorted({**beside, **contents}.items()):
-            digest.update(f"{path}\0{len(content)}\0".encode() + content)
-        code, told = digest.hexdigest(), when.isoformat(timespec="seconds") if when else ""
-        sender = {} if file.sender is None else {k: str(v) for k, v in asdict(file.sender).items() if v}
-        have = self.versions.setdefault(file.student, [])
-        same = next((version for version in reversed(have) if version.hash == code), None)
-        # A copy of what counts is no later submission; what was handed in again after another one is.
-        if same is not None and (same is have[-1] or told <= have[-1].when):
-            if sender and not same.sender:
-                same.sender = sender
-                self.write()
-            return
-        stamp = when.strftime("%Y%m%d-%H%M%S") if when else "unknown"
-        folder = f"{file.student}/{stamp}-{code[:8]}"
-        for path, content in {**beside, **contents}.items():
-            target = self.root / folder / path
-            target.parent.mkdir(parents=True, exist_ok=True)
-            write_atomically(target, content)
-        if when:
-            write_atomically(self.root / folder / TIMESTAMP, when.strftime(NBGRADER_TIME))
-        have.append(Version(file.student, told, file.found.place, file.below[-1], folder, code, sender, notes))
-        have.sort(key=lambda version: version.order)
-        self.write()
-
-    def write(self) -> None:
-        """Write down what is kept."""
-        told = [asdict(version) for _, versions in sorted(self.versions.items()) for version in versions]
-        self.root.mkdir(parents=True, exist_ok=True)
-        write_atomically(self.root / "collected.json", json.dumps(told, indent=1, ensure_ascii=False))
-
-    def hand_over(self, student: str) -> bool:
-        """Put a student's latest version where grading finds it; return whether it was not there."""
-        latest, place = (
-            self.root / self.versions[student][-1].folder,
-            self.course.root / "submitted" / student / self.name,
-        )
-        if place.is_dir():
-            if tree_hash(place) == tree_hash(latest):
-                return False
-            self._adopt(student, place)
-            latest = self.root / self.versions[student][-1].folder
-            if tree_hash(place) == tree_hash(latest):
-                return False
-        new = place.with_name(f".{self.name}.new")
-        shutil.rmtree(new, ignore_errors=True)
-        shutil.copytree(latest, new)
-        if place.is_dir():
-            old = place.with_name(f".{self.name}.old")
-            shutil.rmtree(old, ignore_errors=True)
-            place.rename(old)
-            new.rename(place)
-            shutil.rmtree(old)
-        else:
-            new.rename(place)
-        return True
-
-    def _adopt(self, student: str, place: Path) -> None:
-        """Keep what was put into submitted/ by hand as one more version, of the time when it was written."""
-        code = tree_hash(place)
-        if any(tree_hash(self.root / version.folder) == code for version in self.versions[student]):
-            return
-        written = max((path.stat().st_mtime for path in place.rglob("*") if path.is_file()), default=0.0)
-        when = datetime.fromtimestamp(written, UTC)
-        folder = f"{student}/{when:%Y%m%d-%H%M%S}-{code[:8]}"
-        shutil.copytree(place, self.root / folder, dirs_exist_ok=True)
-        told = when.isoformat(timespec="seconds")
-        self.versions[student].append(Version(student, told, "submitted/", "by hand", folder, code))
-        self.versions[student].sort(key=lambda version: version.order)
-        self.write()
-
-
-def versions_of(course: Course, name: str) -> dict[str, list[Version]]:
-    """Return what was collected of a problem set, student by student, the latest last."""
-    path = course.root / "collected" / name / "collected.json"
-    versions: dict[str, list[Version]] = {}
-    if path.is_file():
-        with naming(f"collected/{name}/{path.name}"):
-            for told in parsed(bounded_read(path)):
-                if not isinstance(told, dict) or {*told} != FIELDS:
-                    raise ValueError(f"must hold what was collected, got {short(told)}: put it away, and collect again")
-                versions.setdefault(told["student"], []).append(Version(**told))
-    return versions
+# --- what is said about it ----------------------------------------------------------------------------------
 
 
 def table_of(course: Course, name: str, collected: Sequence[Collected]) -> list[tuple[str, ...]]:
@@ -365,9 +251,10 @@ def table_of(course: Course, name: str, collected: Sequence[Collected]) -> list[
         notes = [f"{_hours(over.total_seconds())} late"] if over else []
         if version.sender.get("late") and not over:
             notes.append("late, says the LMS")
-        notes += ["no time is known"] * (when is None) + version.notes
+        notes += version.notes
         notes += [f"{len(done.versions) - 1} earlier kept"] * (len(done.versions) > 1)
-        told = f"{when.astimezone():%Y-%m-%d %H:%M}" if when else "-"
+        packed = f"packed {datetime.fromisoformat(version.packed).astimezone():%Y-%m-%d}" if version.packed else "-"
+        told = f"{when.astimezone():%Y-%m-%d %H:%M}" if when else packed
         rows.append((student.id, version.notebook, told, "; ".join(["new"] * done.new + notes)))
     return rows
 

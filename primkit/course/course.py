@@ -35,6 +35,12 @@ SANITIZE_STEPS = [
     "nbgrader.preprocessors.OverwriteCells",
     "nbgrader.preprocessors.CheckCellMetadata",
 ]
+FEEDBACK_STEPS = [
+    "nbgrader.preprocessors.GetGrades",
+    "primkit.course.sanitizing.SafeFeedback",
+    "nbconvert.preprocessors.CSSHTMLHeaderPreprocessor",
+]
+LATE_STEP = "AssignLatePenalties.plugin_class=primkit.course.late.LateRule"
 CONFIG = f'''\
 """nbgrader's settings for this course: read whenever nbgrader runs in this folder."""
 
@@ -59,6 +65,7 @@ c.Autograde.autograde_preprocessors = [
     "nbgrader.preprocessors.CheckCellMetadata",
 ]
 c.AssignLatePenalties.plugin_class = "primkit.course.late.LateRule"  # its settings stand in course.toml
+c.GenerateFeedback.preprocessors = {FEEDBACK_STEPS}
 c.CarefulExecute.course = course
 c.CarefulExecute.timeout = 60  # seconds for each cell
 c.CarefulExecute.tests_timeout = 180  # seconds for each hidden test; its parts have limits of their own
@@ -91,6 +98,7 @@ collected/
 submitted/
 autograded/
 feedback/
+handed_back/
 reports/
 .primkit/
 """

@@ -1,42 +1,53 @@
-"""Grade: every submission of a problem set on its own, unattended.
+"""Grade: every submission of a problem set on its own, unattended, several at once.
 
-nbgrader's ``autograde`` runs once for each student, in a process of its own with a time limit, so that nothing that one
-submission does can cost another one. What was graded already and has not changed since is passed over.
+nbgrader's ``autograde`` and ``generate_feedback`` run once for each student, in a process of its own with a time limit,
+so that nothing that one submission does can cost another one; as many at once as the computer has cores, and memory for
+their limits. What was graded already and has not changed since is passed over, so a run that was stopped goes on.
 
 In:  ``submitted/<student>/<problem set>/``.
-Out: the gradebook, ``autograded/`` and ``feedback/``; ``reports/<problem set>/graded.json`` with all that went wrong,
-     and a log for each student.
+Out: the gradebook, ``autograded/`` and ``feedback/``, each as soon as it is done; ``reports/<problem set>/graded.json``
+     with all that went wrong, and a log for each student.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import fields
-from pathlib import Path
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import contextmanager
 from typing import Any
 
-from ..arguments import short
-from ..formats.files import bounded_read, naming, write_atomically
-from ..formats.values import parsed
-from .course import SANITIZE_STEPS, Course
+import psutil
+
+from ..table import count
+from .course import FEEDBACK_STEPS, LATE_STEP, SANITIZE_STEPS, Course
+from .graded import Graded, Journal
 from .handed_in import Fault, file_faults, strangers, tree_hash
-from .handing_back import hand_back, unmarked_answers
+from .handing_back import finish_feedback, unmarked_answers
+from .late import NBGRADER_TIME, Late
 from .moved import refuse_old_names
 from .running import nbgrader
 
-FAULT_FIELDS = {field.name for field in fields(Fault)}
 SUBMISSION_SECONDS = 1800.0  # for one submission: far more than its cells' own limits come to
+SUBMISSION_BYTES = 4 * 2**30  # of memory for one submission, as in a new course's settings
+BASE_SECONDS = 300  # that a process waits for the gradebook while others write into it
 
 
 def grade(
-    course: Course, name: str, *, again: bool = False, only: Sequence[str] = (), say: Callable[[str], None]
+    course: Course,
+    name: str,
+    *,
+    again: bool = False,
+    only: Sequence[str] = (),
+    at_once: int = 0,
+    say: Callable[[str], None],
 ) -> list[Fault]:
     """Grade all submissions of a problem set, and return what went wrong, one fault for each thing.
 
-    Raises ValueError if nothing was handed in or released, or the course names what has moved.
+    Raises ValueError if nothing was handed in or released, the course names what has moved, or another command grades.
 
     Parameters
     ----------
@@ -46,34 +57,67 @@ def grade(
         Whether to grade submissions again that have not changed.
     only : sequence of str
         These students alone; everybody when empty.
+    at_once : int
+        How many at the same time; 0 for what this computer has cores and memory for.
     say : callable
         Is called with a line for each student, and with those of the summary.
     """
     students = _students_to_grade(course, name, only)
-    say(f"nbgrader runs {len(students)} submission{'s' * (len(students) != 1)}, each for some seconds")
-    folders = [course.root / "submitted" / student / name for student in course.submitted(name)]
-    before, start = tree_hash(*folders), time.monotonic()
-    journal, counts = Journal(course, name), Counter[str]()
-    for number, student in enumerate(students, 1):
-        verdict, line = _grade_one(course, name, student, journal, again)
-        counts[verdict] += 1
-        say(f"{number:4d} of {len(students)}  {student}: {line}")
-    if counts["graded"]:
-        made = nbgrader(course, "generate_feedback", name, "--force", log=course.reports(name) / "log" / "feedback.txt")
-        say("feedback/ is ready" if made.code == 0 else f"feedback/ is not complete: {made.reason}")
-    open_cells = unmarked_answers(course, name)
-    hand_back(course, name, journal.entries if counts["graded"] else journal.failed(), open_cells)
-    told = ", ".join(f"{counts[words]} {words}" for words in ("graded", "unchanged", "not graded") if counts[words])
-    say(f"{len(students)} submission{'s' * (len(students) != 1)} in {time.monotonic() - start:.0f} s: {told}")
-    same = tree_hash(*folders) == before
-    say(f"submitted/ is {'as it was' if same else 'CHANGED: the journal tells whose run it was'}")
-    if number := sum(map(len, open_cells.values())):
+    most = at_once or max(1, min(os.cpu_count() or 1, psutil.virtual_memory().total // SUBMISSION_BYTES))
+    with _alone(course, name):
+        say(f"nbgrader runs {count(len(students), 'submission')}, {most} at once, each for some seconds")
+        folders = [course.root / "submitted" / student / name for student in course.submitted(name)]
+        before, start = tree_hash(*folders), time.monotonic()
+        journal, counts = Journal(course, name), Counter[str]()
+        _set_due(course, name)
+        with ThreadPoolExecutor(most) as pool:
+            running = [pool.submit(_grade_one, course, name, student, journal, again) for student in students]
+            try:
+                for number, done in enumerate(as_completed(running), 1):
+                    graded = done.result()
+                    journal.write(graded)
+                    counts[graded.verdict] += 1
+                    say(f"{number:4d} of {len(students)}  {graded.student}: {graded.line}")
+            except BaseException:
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
+        told = ", ".join(f"{counts[words]} {words}" for words in ("graded", "unchanged", "not graded") if counts[words])
+        say(f"{count(len(students), 'submission')} in {time.monotonic() - start:.0f} s: {told}")
+        same = tree_hash(*folders) == before
+        say(f"submitted/ is {'as it was' if same else 'CHANGED: the journal tells whose run it was'}")
+    if number := sum(map(len, unmarked_answers(course, name).values())):
         answers = "answer waits" if number == 1 else "answers wait"
         say(
             f"{number} written {answers} to be marked by hand: in formgrader, a page of `jupyter lab`; then "
-            f"`nbgrader generate_feedback {name} --force`"
+            f"`primkit teach hand-back {name}`"
         )
     return [*strangers(course, name), *journal.faults()]
+
+
+@contextmanager
+def _alone(course: Course, name: str) -> Iterator[None]:
+    """Hold a lock that ends with its process; a ValueError says that another one has it."""
+    folder = course.root / ".primkit"
+    folder.mkdir(exist_ok=True)
+    with open(folder / f"{name}.lock", "a+b") as file:
+        try:
+            try:
+                import fcntl
+
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except ImportError:
+                import msvcrt  # Windows
+
+                msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined]
+        except OSError:
+            raise ValueError(f"{name} is being graded by another command: wait until that has ended") from None
+        yield
+
+
+def _set_due(course: Course, name: str) -> None:
+    """Tell the gradebook when a set is due: it counts from there how late a submission is."""
+    if (due := Late.of(course.root).due.get(name)) is not None:
+        nbgrader(course, "db", "assignment", "add", name, f"--duedate={due.strftime(NBGRADER_TIME)}")
 
 
 def _students_to_grade(course: Course, name: str, only: Sequence[str]) -> list[str]:
@@ -89,30 +133,52 @@ def _students_to_grade(course: Course, name: str, only: Sequence[str]) -> list[s
     return list(only) or everybody
 
 
-def _grade_one(course: Course, name: str, student: str, journal: Journal, again: bool) -> tuple[str, str]:
-    """Grade one submission; return how it went, in one of three words and in a line."""
-    folder = course.root / "submitted" / student / name
-    before = tree_hash(folder, course.root / "source" / name, course.root / "grader")
-    if not again and journal.knows(student, before):
-        return "unchanged", "graded before, and not changed since"
-    faults, start = file_faults(course, name, student), time.monotonic()
-    if not faults:
-        steps = f"--Autograde.sanitize_preprocessors={SANITIZE_STEPS}"  # also in a course that was made without
-        words = ("autograde", name, f"--student={student}", "--force", steps)
-        done = nbgrader(course, *words, log=course.reports(name) / "log" / f"{student}.txt", seconds=SUBMISSION_SECONDS)
-        if done.code != 0:
-            faults.append(Fault(student, "-", "not graded", f"nbgrader could not grade it: {done.reason}"))
-    graded = not faults
-    if graded:
-        faults += list(_read_faults(course, name, student))
-    if tree_hash(folder, course.root / "source" / name, course.root / "grader") != before:
-        says = "while it ran, files in submitted/, source/ or grader/ changed"
-        faults.append(Fault(student, "-", "changed files", says))
-    journal.write(student, before, graded, faults)
+def _grade_one(course: Course, name: str, student: str, journal: Journal, again: bool) -> Graded:
+    """Grade one submission, and write its feedback."""
+    hashed, start = "", time.monotonic()
+    try:
+        hashed = _hash(course, name, student)
+        if not again and journal.knows(student, hashed):
+            return Graded(student, "unchanged", "graded before, and not changed since")
+        faults = file_faults(course, name, student) or list(_run(course, name, student))
+        graded = not faults
+        if graded:
+            faults += _read_faults(course, name, student)
+        if _hash(course, name, student) != hashed:
+            says = "while it ran, files in submitted/, source/ or grader/ changed"
+            faults.append(Fault(student, "-", "changed files", says))
+        finish_feedback(course, name, student, () if graded else faults)
+    except Exception as error:  # whatever one submission meets, the others are graded
+        says = f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
+        graded, faults = False, [Fault(student, "-", "not graded", says)]
     told = "; ".join(f"{fault.cell}: {fault.says}" for fault in faults)
     if not graded:
-        return "not graded", told
-    return "graded", "; ".join(filter(None, [f"graded in {time.monotonic() - start:.0f} s", told]))
+        return Graded(student, "not graded", told, hashed, faults)
+    line = "; ".join(filter(None, [f"graded in {time.monotonic() - start:.0f} s", told]))
+    return Graded(student, "graded", line, hashed, faults)
+
+
+def _hash(course: Course, name: str, student: str) -> str:
+    """Return a hash of all that a mark depends on."""
+    late = Late.of(course.root)
+    due = late.due_for(name, student)
+    files = tree_hash(course.root / "submitted" / student / name, course.root / "source" / name, course.root / "grader")
+    return f"{files} {due} {late.grace:g} {late.percent:g} {late.days:g}" if due else files
+
+
+def _run(course: Course, name: str, student: str) -> Iterator[Fault]:
+    """Let nbgrader run a submission and make its feedback, once more if it fails; yield a fault if it fails again."""
+    base = f"--CourseDirectory.db_url=sqlite:///{(course.root / 'gradebook.db').as_posix()}?timeout={BASE_SECONDS}"
+    whose = (name, f"--student={student}", "--force", base)
+    # The steps of today, also in a course that was made without some of them.
+    run = ("autograde", *whose, f"--Autograde.sanitize_preprocessors={SANITIZE_STEPS}", f"--{LATE_STEP}")
+    tell = ("generate_feedback", *whose, f"--GenerateFeedback.preprocessors={FEEDBACK_STEPS}")
+    log = course.reports(name) / "log" / f"{student}.txt"
+    done = nbgrader(course, *run, "&&", *tell, log=log, seconds=SUBMISSION_SECONDS)
+    if done.code != 0 and not done.stopped:
+        done = nbgrader(course, *run, "&&", *tell, log=log, seconds=SUBMISSION_SECONDS)
+    if done.code != 0:
+        yield Fault(student, "-", "not graded", f"nbgrader could not grade it: {done.reason}")
 
 
 def _read_faults(course: Course, name: str, student: str) -> Iterator[Fault]:
@@ -122,46 +188,3 @@ def _read_faults(course: Course, name: str, student: str) -> Iterator[Fault]:
         noted: Any = json.loads(path.read_text(encoding="utf-8"))["metadata"].get("primkit", {})
         for fault in noted.get("faults", ()):
             yield Fault(student, fault["cell"], fault["name"], fault["says"])
-
-
-def _entries_in(path: Path) -> dict[str, Any]:
-    """Return what a journal holds, or say in one sentence that it is none."""
-    with naming(path.name):
-        told = parsed(bounded_read(path))
-        for entry in told.values() if isinstance(told, dict) else [told]:
-            if not isinstance(entry, dict) or {*entry} != {"hash", "graded", "faults"}:
-                rule = "must hold the hash, the verdict and the faults of each student"
-                raise ValueError(f"{rule}, got {short(entry)}: put it away, and grade again")
-            faults = entry["faults"] if isinstance(entry["faults"], list) else [entry["faults"]]
-            if any(not isinstance(fault, dict) or {*fault} != FAULT_FIELDS for fault in faults):
-                raise ValueError(f"must hold faults with {', '.join(sorted(FAULT_FIELDS))}, got {short(faults)}")
-        return dict(told)
-
-
-class Journal:
-    """What has been graded, in a file that is written after every student."""
-
-    def __init__(self, course: Course, name: str) -> None:
-        self.path: Path = course.reports(name) / "graded.json"
-        self.entries: dict[str, Any] = {}
-        if self.path.is_file():
-            self.entries = _entries_in(self.path)
-
-    def knows(self, student: str, hashed: str) -> bool:
-        """Tell whether these very files were graded."""
-        entry = self.entries.get(student, {})
-        return bool(entry.get("hash") == hashed and entry.get("graded"))
-
-    def write(self, student: str, hashed: str, graded: bool, faults: Sequence[Fault]) -> None:
-        """Write down what came out for a student."""
-        told = [fault.data() for fault in faults]
-        self.entries[student] = {"hash": hashed, "graded": graded, "faults": told}
-        write_atomically(self.path, json.dumps(self.entries, indent=1, sort_keys=True))
-
-    def failed(self) -> dict[str, Any]:
-        """Return the entries of those that could not be graded."""
-        return {student: entry for student, entry in self.entries.items() if not entry["graded"]}
-
-    def faults(self) -> list[Fault]:
-        """Return all that went wrong, student by student."""
-        return [Fault(**fault) for _, entry in sorted(self.entries.items()) for fault in entry["faults"]]

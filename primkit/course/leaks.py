@@ -131,7 +131,7 @@ def pieces(text: str) -> Iterator[Piece]:
     for version in _versions(text):
         tokens = _tokens(version)
         for start in range(len(tokens) - PIECE_TOKENS + 1):
-            piece = _rename_variables(tokens[start : start + PIECE_TOKENS])
+            piece = rename_variables(tokens[start : start + PIECE_TOKENS])
             if piece not in seen:
                 seen.add(piece)
                 yield piece
@@ -153,7 +153,7 @@ def _tokens(text: str) -> list[str]:
     return TOKEN.findall(COMMENT.sub("", text))
 
 
-def _rename_variables(tokens: Sequence[str]) -> Piece:
+def rename_variables(tokens: Sequence[str]) -> Piece:
     """Return tokens with numbers in the place of variables; attributes and known names stay."""
     names: dict[str, str] = {}
     return tuple(
@@ -189,7 +189,7 @@ def _search(text: str, secrets: Secrets, shapes: set[Piece]) -> Iterator[str]:
         shape = _shape(tokens)
         for start in range(len(tokens) - PIECE_TOKENS + 1):
             if shape[start : start + PIECE_TOKENS] in shapes:  # most are told by this alone
-                held.add(_rename_variables(tokens[start : start + PIECE_TOKENS]))
+                held.add(rename_variables(tokens[start : start + PIECE_TOKENS]))
     for (folder, where), solution in secrets.solutions.items():
         share = len(solution & held) / len(solution)
         if share >= LEAK_SHARE[folder]:

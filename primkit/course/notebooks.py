@@ -55,12 +55,20 @@ def cells_of(course: Course) -> Cells:
     stubs: dict[str, str] = {}
     for name in course.sets():
         for notebook in course.notebooks(name):
-            source = json.loads((course.root / "source" / name / f"{notebook}.ipynb").read_text(encoding="utf-8"))
+            source, released = (
+                read_notebook(course.root / place / name / f"{notebook}.ipynb") for place in ("source", "release")
+            )
             marks.setdefault(name, {})[notebook] = {mark for mark, _ in marked(source)}
-            released = course.root / "release" / name / f"{notebook}.ipynb"
-            if released.is_file():
-                stubs |= {mark: text_of(cell) for mark, cell in marked(json.loads(released.read_text("utf-8")))}
+            stubs |= {mark: text_of(cell) for mark, cell in marked(released)}
     return Cells(marks, stubs)
+
+
+def read_notebook(path: Path) -> Any:
+    """Return what a notebook's file holds; a notebook without cells where there is none, or it cannot be read."""
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return {"cells": []}
 
 
 def marked(notebook: Any) -> Iterator[tuple[str, Any]]:

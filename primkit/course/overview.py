@@ -1,23 +1,27 @@
 """Overview: what a class did in a problem set, task by task and part by part.
 
 In:  the gradebook, and the marks that the hidden tests left in the autograded notebooks.
-Out: an ``Overview``: for each task and part the mean, the share of right answers and the usual wrong ones; and one line
-     for each thing that went wrong.
+Out: an ``Overview``: for each task and part the mean, the share of right answers, how well it parts the good from the
+     weak, and the usual wrong answers; the kinds of them, those that fail alike; a line for each thing that went wrong.
 """
 
 from __future__ import annotations
 
-import json
-from collections import Counter
+import hashlib
+import re
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from datetime import datetime
+from statistics import StatisticsError, correlation
 from textwrap import shorten
 from typing import Any
 
 from .course import Course
-from .grade import Journal
+from .graded import Journal
 from .grading.mark import MIME
 from .handed_in import Fault, strangers
+from .notebooks import marked, read_notebook
 
 UNNAMED = "wrong in another way"
 VISIBLE_LETTERS = 60  # letters of a visible test's own words
@@ -30,19 +34,53 @@ class Line:
     task: str
     part: str  # empty for a whole task
     of: float
-    points: list[float] = field(default_factory=list)
+    points: dict[str, float] = field(default_factory=dict)  # of each student
     wrong: Counter[str] = field(default_factory=Counter)
     open: int = 0  # answers that a person has still to mark
+    seconds: list[float] = field(default_factory=list)  # that the task's cells took
 
     @property
     def mean(self) -> float:
         """Mean points of all who handed in."""
-        return sum(self.points) / len(self.points) if self.points else 0.0
+        return sum(self.points.values()) / len(self.points) if self.points else 0.0
 
     @property
     def right(self) -> float:
         """Share of those who have all points."""
-        return sum(points >= self.of for points in self.points) / len(self.points) if self.points else 0.0
+        return sum(points >= self.of for points in self.points.values()) / len(self.points) if self.points else 0.0
+
+    def parts_well(self, scores: dict[str, float]) -> float | None:
+        """Return the correlation of these points with all the others: 0 tells nothing of a student, below 0 misleads.
+
+        >>> Line("half", "", 2, {"a": 2, "b": 0, "c": 2}).parts_well({"a": 9, "b": 3, "c": 8})
+        0.9707253433941511
+        """
+        mine = [(points, scores[student] - points) for student, points in self.points.items() if student in scores]
+        try:
+            return correlation(*zip(*mine, strict=True))
+        except (StatisticsError, TypeError):  # fewer than two, or all alike
+            return None
+
+
+@dataclass(frozen=True)
+class Wrong:
+    """One answer that is not right: whose, in which task and part, by the name of the fault and in words."""
+
+    student: str
+    task: str
+    part: str
+    name: str
+    says: str
+
+
+@dataclass(frozen=True)
+class Kind:
+    """Wrong answers to a task that fail alike: in the same parts, with the same faults."""
+
+    code: str  # of what they have in common: the same in every report
+    task: str
+    says: str
+    students: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -56,12 +94,28 @@ class Overview:
     scores: dict[str, float]
     lines: tuple[Line, ...]
     faults: tuple[Fault, ...]  # of files and cells: what a teacher should look at
-    wrong: tuple[tuple[str, str, str, str, str], ...]  # student, task, part, name, what is off
+    wrong: tuple[Wrong, ...]
 
     @property
     def mean(self) -> float:
         """Mean score of those who were graded."""
         return sum(self.scores.values()) / len(self.scores) if self.scores else 0.0
+
+    def kinds(self) -> list[Kind]:
+        """Return the kinds of wrong answers, the most frequent first; a stub that nobody touched is no answer."""
+        groups: dict[tuple[str, str], list[str]] = defaultdict(list)
+        failed: dict[tuple[str, str], list[Wrong]] = defaultdict(list)
+        for wrong in self.wrong:
+            failed[wrong.student, wrong.task].append(wrong)
+        for (student, task), wrongs in failed.items():
+            if any(wrong.name != "not attempted" for wrong in wrongs):
+                told = [f"{w.part}: {w.name if w.name != UNNAMED else _without_numbers(w.says)}" for w in wrongs]
+                groups[task, "; ".join(told)].append(student)
+        kinds = [
+            Kind(hashlib.sha256(f"{task}\0{says}".encode()).hexdigest()[:8], task, says, tuple(sorted(students)))
+            for (task, says), students in groups.items()
+        ]
+        return sorted(kinds, key=lambda kind: (-len(kind.students), kind.task, kind.says))
 
     def parts(self) -> list[Line]:
         """Return the lines that no other line is made of."""
@@ -82,64 +136,109 @@ def overview(course: Course, name: str) -> Overview:
         raise ValueError(f"nothing of {name} has been graded yet: run `primkit teach grade {name}` first")
     lines: dict[tuple[str, str], Line] = {}
     scores: dict[str, float] = {}
-    wrong: list[tuple[str, str, str, str, str]] = []
+    wrong: list[Wrong] = []
+    faults = [*strangers(course, name), *journal.faults()]
     cells = {student: _read_cells(course, name, student) for student in students}
-    tasks = {cell: mark for marked in cells.values() for cell, (mark, _) in marked.items() if mark}
+    tasks = {cell: shown.mark for seen in cells.values() for cell, shown in seen.items() if shown.mark}
     with Gradebook(f"sqlite:///{(course.root / 'gradebook.db').as_posix()}") as book:
         of = float(book.find_assignment(name).max_score)
         for student in students:
             try:
                 submission = book.find_submission(name, student)
             except MissingEntry:
+                faults.append(
+                    Fault(student, "-", "missing set", f"the gradebook has no {name} of theirs: grade it again")
+                )
                 continue
-            scores[student] = float(submission.score)
+            scores[student] = max(0.0, float(submission.score) - float(submission.late_submission_penalty or 0))
+            if scores[student] > of:
+                faults.append(Fault(student, "-", "above the maximum", f"{scores[student]:g} of {of:g} points"))
             for grade in (grade for notebook in submission.notebooks for grade in notebook.grades):
-                mark, error = cells[student].get(grade.cell.name, (None, None))
+                shown = cells[student].get(grade.cell.name, Shown())
                 like = tasks.get(grade.cell.name)
                 called = like["task"] if like else grade.cell.name
                 line = lines.setdefault((grade.cell.name, ""), Line(called, "", grade.max_score))
-                line.points.append(float(grade.score))
+                line.points[student] = float(grade.score)
                 line.open += bool(grade.needs_manual_grade)
+                if shown.seconds is not None:
+                    line.seconds.append(shown.seconds)
+                if grade.score > grade.max_score:
+                    says = f"{grade.score:g} of {grade.max_score:g} points"
+                    faults.append(Fault(student, grade.cell.name, "above the maximum", says))
                 if like:
-                    wrong += _add_parts(lines, grade.cell.name, student, mark, like, error)
-                elif error and grade.score < grade.max_score:
-                    called, says = _name_error(grade.cell.name, *error)
+                    wrong += _add_parts(lines, grade.cell.name, student, shown, like)
+                elif shown.error and grade.score < grade.max_score:
+                    called, says = _name_error(grade.cell.name, *shown.error)
                     line.wrong[called] += 1
-                    wrong.append((student, grade.cell.name, "", called, says))
-    faults = (*strangers(course, name), *journal.faults())
-    handed_in = len(course.submitted(name))
-    return Overview(name, handed_in, len(scores), of, scores, tuple(lines.values()), faults, tuple(wrong))
+                    wrong.append(Wrong(student, grade.cell.name, "", called, says))
+    for (cell, part), line in lines.items():
+        if (tells := _differing(cell, part, line, tasks)) is not None:
+            faults.append(Fault("-", cell, "differing points", tells))
+    return Overview(
+        name, len(course.submitted(name)), len(scores), of, scores, tuple(lines.values()), tuple(faults), tuple(wrong)
+    )
 
 
-def _add_parts(
-    lines: dict[tuple[str, str], Line], cell: str, student: str, mark: Any, like: Any, error: tuple[str, str] | None
-) -> Iterator[tuple[str, str, str, str, str]]:
+def _differing(cell: str, part: str, line: Line, tasks: dict[str, Any]) -> str | None:
+    """Return how the points of a graded cell and of its hidden tests differ, or None."""
+    if part or cell not in tasks or tasks[cell].get("of") == line.of:
+        return None
+    return f"the cell has {line.of:g} points, its hidden tests {tasks[cell].get('of')}: mend one, then release again"
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What a graded cell shows: a mark, or the name and words of an error; and how long it took."""
+
+    mark: Any = None
+    error: tuple[str, str] | None = None
+    seconds: float | None = None
+
+
+def _add_parts(lines: dict[tuple[str, str], Line], cell: str, student: str, shown: Shown, like: Any) -> Iterator[Wrong]:
     """Add the parts of one hidden test, and yield those that are not right."""
-    for part in (mark or like)["parts"]:
+    for part in (shown.mark or like)["parts"]:
         line = lines.setdefault((cell, part["says"]), Line(like["task"], part["says"], part["of"]))
-        if mark is None:  # the cell failed before its points came out
-            name, says = error or (UNNAMED, "")
+        if shown.mark is None:  # the cell failed before its points came out
+            name, says = shown.error or (UNNAMED, "")
             points = 0.0
         else:
             points = float(part["points"])
             name = part["fault"] or ("not attempted" if part["verdict"] == "not attempted" else UNNAMED)
             says = part["off"]
-        line.points.append(points)
+        line.points[student] = points
         if points < part["of"]:
             line.wrong[name] += 1
-            yield student, like["task"], part["says"], name, says
+            yield Wrong(student, like["task"], part["says"], name, says)
 
 
-def _read_cells(course: Course, name: str, student: str) -> dict[str, tuple[Any, tuple[str, str] | None]]:
-    """Return for each graded code cell the mark that it shows, or its error."""
-    found: dict[str, tuple[Any, tuple[str, str] | None]] = {}
+def _read_cells(course: Course, name: str, student: str) -> dict[str, Shown]:
+    """Return what each graded code cell shows."""
+    found: dict[str, Shown] = {}
     for notebook in course.notebooks(name):
-        path = course.root / "autograded" / student / name / f"{notebook}.ipynb"
-        for cell in json.loads(path.read_text(encoding="utf-8"))["cells"] if path.is_file() else ():
-            about = cell["metadata"].get("nbgrader", {})
-            if about.get("grade") and cell["cell_type"] == "code":
-                found[about["grade_id"]] = _read_outputs(cell["outputs"])
+        for mark, cell in marked(read_notebook(course.root / "autograded" / student / name / f"{notebook}.ipynb")):
+            if cell["metadata"]["nbgrader"].get("grade") and cell["cell_type"] == "code":
+                found[mark] = _read_outputs(cell["outputs"], _seconds(cell["metadata"].get("execution", {})))
     return found
+
+
+def _seconds(told: dict[str, str]) -> float | None:
+    """Return how long a cell took, by the times that it was begun and answered; None if it was not timed."""
+    try:
+        begun, ended = (datetime.fromisoformat(told[name]) for name in ("iopub.execute_input", "shell.execute_reply"))
+    except (KeyError, ValueError):
+        return None
+    return (ended - begun).total_seconds()
+
+
+def _without_numbers(says: str) -> str:
+    """Return what is off without the values of one student.
+
+    >>> _without_numbers("in 3 of 8 cases. For example half(x=3): got 0.5 m, expected 1.5 m.")
+    'in some cases'
+    """
+    words = re.sub(r"in \d+ of \d+ cases", "in some cases", says)
+    return re.sub(r"[-+]?\d[\d.e+-]*", "#", words.partition(". For example")[0].partition("\n")[0])
 
 
 def _name_error(cell: str, name: str, says: str) -> tuple[str, str]:
@@ -158,13 +257,20 @@ def _name_error(cell: str, name: str, says: str) -> tuple[str, str]:
     return (shorten(words, VISIBLE_LETTERS, placeholder=" ...") if name == "AssertionError" and words else name), says
 
 
-def _read_outputs(outputs: Sequence[Any]) -> tuple[Any, tuple[str, str] | None]:
+def _read_outputs(outputs: Sequence[Any], seconds: float | None) -> Shown:
     """Return the mark among a cell's outputs; or the name and words of its error."""
     errors = [output for output in outputs if output["output_type"] == "error"]
-    marks = [output["data"][MIME] for output in outputs if MIME in output.get("data", {})]
+    marks = [output["data"][MIME] for output in outputs if _is_mark(output.get("data", {}).get(MIME))]
     if errors:
         name = "not attempted" if errors[0]["ename"] == "NotImplementedError" else errors[0]["ename"]
-        return None, (name, errors[0]["evalue"])
+        return Shown(None, (name, errors[0]["evalue"]), seconds)
     if any(output["output_type"] == "stream" and output["name"] == "stderr" for output in outputs):
-        return None, ("writes to stderr", "nbgrader takes this as a failed test")
-    return (marks[-1] if marks else None), None
+        return Shown(None, ("writes to stderr", "nbgrader takes this as a failed test"), seconds)
+    return Shown(marks[-1] if marks else None, None, seconds)
+
+
+def _is_mark(told: Any) -> bool:
+    """Tell whether this is a mark: a submission may show anything in its place."""
+    parts = told.get("parts") if isinstance(told, dict) else None
+    names = {"says", "points", "of", "verdict", "fault", "off"}
+    return isinstance(parts, list) and all(isinstance(part, dict) and names <= {*part} for part in parts)

@@ -6,6 +6,7 @@ Out: whether it succeeded, and its log.
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -13,9 +14,21 @@ import sys
 import sysconfig
 import tempfile
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 
 from .course import Course
+
+# Several commands in one process: nbgrader takes seconds to be read in.
+IN_A_ROW = """\
+import json, sys
+from nbgrader.apps.nbgraderapp import NbGraderApp
+from traitlets.config import Application
+for words in json.loads(sys.argv[1]):
+    if Application.initialized():
+        Application.instance().clear_instance()
+    NbGraderApp.launch_instance(words)
+"""
 
 
 @dataclass(frozen=True)
@@ -24,6 +37,7 @@ class Done:
 
     code: int
     log: str
+    stopped: bool = False  # because its time was over
 
     @property
     def reason(self) -> str:
@@ -35,8 +49,9 @@ class Done:
 
 
 def nbgrader(course: Course, *words: str, log: Path | None = None, seconds: float | None = None) -> Done:
-    """Run a command of nbgrader's in the course folder."""
-    command = [sys.executable, "-m", "nbgrader", *words]
+    """Run a command of nbgrader's in the course folder; several, each if those before succeed, with && between."""
+    commands = [list(group) for joins, group in groupby(words, lambda word: word == "&&") if not joins]
+    command = [sys.executable, "-c", IN_A_ROW, json.dumps(commands)]
     # Into a file, not a pipe: a pipe stays open for as long as anything lives that a submission has started.
     with tempfile.TemporaryFile() as said:
         try:
@@ -54,7 +69,7 @@ def nbgrader(course: Course, *words: str, log: Path | None = None, seconds: floa
         except subprocess.TimeoutExpired:
             code, last = 1, f"\nTimeoutError: nbgrader was stopped after {seconds or 0:g} s"
         said.seek(0)
-        result = Done(code, said.read().decode("utf-8", "replace").replace("\r\n", "\n") + last)
+        result = Done(code, said.read().decode("utf-8", "replace").replace("\r\n", "\n") + last, bool(last))
     if log is not None:
         log.parent.mkdir(parents=True, exist_ok=True)
         log.write_text(f"$ nbgrader {' '.join(words)}\n{result.log}", encoding="utf-8")

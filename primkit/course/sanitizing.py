@@ -6,6 +6,8 @@ comes between these two steps: a copy is the student's own cell from there on; a
 is missing, the imports at the top above all, comes back from the release, with a note above it. An answer's own cell
 does not: its stub would overwrite an answer that was typed elsewhere.
 
+``SafeFeedback`` stands before the page of feedback: of what students wrote and their code showed, no script is left.
+
 In:  a submission without double marks, and ``release/`` of the course.
 Out: a notebook that nbgrader can grade; ``metadata.primkit.faults`` names what came back.
 """
@@ -16,11 +18,40 @@ from pathlib import Path
 from typing import Any
 
 import nbformat
+from nbconvert.preprocessors import sanitize
 from nbformat.v4 import new_markdown_cell
 from nbgrader.preprocessors import NbGraderPreprocessor
-from traitlets import Unicode
+from traitlets import Bool, Unicode
 
 MISSING = "was missing in what was handed in: it was put back"
+# What is kept of HTML in students' words and outputs: texts and tables, the marks' own among them.
+TAGS = (
+    *("a", "abbr", "b", "blockquote", "br", "caption", "code", "div", "em", "h1", "h2", "h3", "h4", "h5", "h6", "hr"),
+    *("i", "li", "ol", "p", "pre", "s", "small", "span", "strong", "sub", "sup"),
+    *("table", "tbody", "td", "th", "thead", "tr", "ul"),
+)
+SPANS = ["colspan", "rowspan", "scope"]
+ATTRIBUTES = {"*": ["style", "title"], "a": ["href"], "td": SPANS, "th": SPANS}
+
+
+class SafeFeedback(sanitize.SanitizeHTML):
+    """Take what could run out of cells that are not the teacher's own."""
+
+    enabled = Bool(True).tag(config=True)  # nbconvert's own steps are not, unless they are told so
+
+    def preprocess(self, nb: Any, resources: Any) -> Any:
+        """Sanitize a notebook, and leave out what only widgets and languages need."""
+        self.tags, self.attributes, self.styles = list(TAGS), ATTRIBUTES, [*self.styles, "padding"]
+        for name in ("widgets", "language_info", "title", "authors"):
+            nb.metadata.pop(name, None)
+        return super().preprocess(nb, resources)  # type: ignore[no-untyped-call]
+
+    def preprocess_cell(self, cell: Any, resources: Any, cell_index: int) -> Any:
+        """Sanitize a cell; of a locked one, whose text is the teacher's own, only what it shows."""
+        if cell.cell_type != "code" and cell.metadata.get("nbgrader", {}).get("locked"):
+            return cell, resources
+        cell.pop("attachments", None)
+        return super().preprocess_cell(cell, resources, cell_index)  # type: ignore[no-untyped-call]
 
 
 class WholeNotebook(NbGraderPreprocessor):  # type: ignore[misc]

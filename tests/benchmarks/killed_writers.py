@@ -20,7 +20,7 @@ import numpy as np
 import primkit as pk
 from primkit import formats
 from primkit.course.course import Course
-from primkit.course.grade import Journal, _entries_in
+from primkit.course.graded import Graded, Journal, _entries_in
 
 from .mutants import seeds
 
@@ -36,7 +36,7 @@ def write_all(folder, which):
     formats.save_scans(seen, folder / "a.npz")
     formats.save_drive(formats.Drive(seen, wheels, LIDAR), folder / "a.jsonl")
     formats.save_route(formats.Route((0, 0, which), wheels), folder / "a.json")
-    Journal(Course(folder), "ps1").write(f"student-{which}", str(which), True, [])
+    Journal(Course(folder), "ps1").write(Graded(f"student-{which}", "graded", "", str(which)))
     with formats.record_drive(folder / f"own-{os.getpid()}.jsonl", LIDAR, replace=True) as journal:
         for number in range(5):
             journal.add(seen[number], wheels[number])

@@ -24,7 +24,7 @@ import numpy as np
 import primkit as pk
 from primkit import formats
 from primkit.course.course import STUDENTS, Course
-from primkit.course.grade import _entries_in
+from primkit.course.graded import _entries_in
 from primkit.course.handed_in import _not_a_notebook
 from primkit.study import run_study
 from primkit.study.journal import open_journal
