@@ -19,6 +19,8 @@ import pytest
 import primkit as pk
 from primkit.checks import judges
 from primkit.checks.answer import VERDICT_COLORS, VERDICT_SIGNS, Answer, Check, Fault
+from tests.answers.styles import STYLES, styled
+from tests.slips import right
 
 FOLDER = Path(__file__).resolve().parent / "answers"
 ANSWERS = {}
@@ -346,3 +348,10 @@ def test_an_argument_that_was_left_out_is_named_as_that():
     assert answer.fault == "asks for other arguments"
     inside = TASKS["drive_step"](lambda *_arguments: (lambda one: one)())
     assert inside.fault == "raises TypeError"
+
+
+@pytest.mark.parametrize("style", STYLES)
+@pytest.mark.parametrize("task", TASKS)
+def test_a_right_answer_is_right_in_every_form(task, style):
+    answer = TASKS[task](styled(getattr(right, task))[style])
+    assert answer.right, answer
