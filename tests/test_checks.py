@@ -4,8 +4,11 @@ The answers are in tests/answers, a module for each lesson; the tests take them 
 """
 
 import ast
+import contextlib
+import copy
 import itertools
 import re
+import sys
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -16,6 +19,8 @@ import pytest
 import primkit as pk
 from primkit.checks import judges
 from primkit.checks.answer import VERDICT_COLORS, VERDICT_SIGNS, Answer, Check, Fault
+from tests.answers.styles import STYLES, styled
+from tests.slips import right
 
 FOLDER = Path(__file__).resolve().parent / "answers"
 ANSWERS = {}
@@ -132,13 +137,110 @@ def test_a_lesson_goes_on_with_the_right_function(task):
     assert check.judge(open_task(*args), check.reference(*args), args) is None
 
 
-def test_what_a_function_prints_and_warns_stays_quiet(capsys):
+def test_what_a_function_prints_stays_quiet_and_what_numpy_warns_of_is_told(capsys):
     def talks(origin, direction, a, b):
         print("here", np.float64(1.0) / np.float64(0.0))
         return pk.checks.ray_segment.reference(origin, direction, a, b)
 
-    assert pk.checks.ray_segment(talks).right
+    answer = pk.checks.ray_segment(talks)
+    assert answer.right
+    assert re.search(r"cases\. But in 2\d\d of them NumPy warns: divide by zero .* in line \d+, `print\(", answer.says)
     assert capsys.readouterr().out == ""
+
+
+def test_an_error_in_an_edge_case_hides_nothing():
+    def drive_step(pose, left, right, seconds):
+        x, y, heading = pose
+        v, w = 0.0205 * (left + right) / 2, 0.0205 * (right - left) / 0.052
+        after = heading + w * seconds
+        radius = v / w
+        return x + radius * (np.sin(after) - np.sin(heading)), y - radius * (np.cos(after) - np.cos(heading)), after
+
+    answer = pk.checks.drive_step(drive_step)
+    assert answer.says.startswith("right in 162 of 205 cases; raises ZeroDivisionError in 43. For example drive_step(")
+    assert ", `radius = v / w`.\nEvery arc is right. When both wheels turn equally fast" in answer.says
+    assert answer.args == ((0.0, 0.0, 0.0), 2.0, 2.0, 1.0)
+    assert answer.fault == "w of zero"
+
+
+def test_an_error_everywhere_says_what_it_may_come_from():
+    unknown = pk.checks.circle_rms(lambda *_arguments: npp.sqrt(1))  # noqa: F821
+    assert unknown.says.endswith("After a restart of the kernel, run the cells above again.")
+    shapes = pk.checks.assign_points(lambda points, centers: (points - centers[:, :1].T).sum(axis=1))
+    assert "which axis is which?" in shapes.says
+
+
+def test_a_loop_that_never_ends_is_told_and_the_others_are_not_waited_for():
+    def ray_circle(origin, direction, center, radius):
+        t = 0.0
+        while np.hypot(*(origin + t * direction - center)) > radius:
+            t += 0.001
+        return t
+
+    answer = pk.checks.ray_circle(ray_circle, 0.2)
+    assert answer.fault == "out of time"
+    assert " did not end: stopped after 0.2 s in line " in answer.says
+    assert "Which comparison should end it?" in answer.says
+
+
+def test_a_loop_that_catches_every_exception_is_stopped_too():
+    def stubborn(*_arguments):
+        while True:
+            with contextlib.suppress(Exception):
+                raise ValueError
+
+    assert pk.checks.ray_circle(stubborn, 0.1).fault == "out of time"
+
+
+def test_the_tracing_of_before_is_back():
+    seen = sys.gettrace()
+    pk.checks.ray_circle(lambda *_arguments: 0.0)
+    assert sys.gettrace() is seen
+
+
+def test_an_interrupt_shows_a_short_word():
+    def pressed(*_arguments):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt, match=r"^Interrupted in line \d+, `raise KeyboardInterrupt`\.") as stop:
+        pk.checks.ray_circle(pressed)
+    assert stop.value._render_traceback_() == [str(stop.value)]
+
+
+def test_a_function_of_another_name_is_told():
+    scope = {"__name__": "__main__"}
+    exec("def ray_circle(origin, direction, center, radius):\n    return ...\n", scope)
+    assert repr(pk.checks.ray_circle(scope["ray_circle"])) == "○ not attempted: ray_circle still returns `...`."
+    exec("def my_circle(origin, direction, center, radius):\n    return 1.0\n", scope)
+    says = pk.checks.ray_circle(scope["ray_circle"]).says
+    assert says.endswith("\nThis is about ray_circle. Is my_circle your answer? Then give it the name ray_circle.")
+
+
+def test_what_is_given_may_not_change_whatever_it_is():
+    def into_the_set(cells, *scan):
+        cells |= pk.checks.occupy.reference(cells, *scan)
+        return cells
+
+    def into_the_list(found, true, pairs, tolerance):
+        result = pk.checks.weighted_accuracy.reference(found, true, pairs, tolerance)
+        found.clear()
+        return result
+
+    for check, mine in ((pk.checks.occupy, into_the_set), (pk.checks.weighted_accuracy, into_the_list)):
+        assert check(mine).fault == "changes its arguments"
+    given = [{1}, pk.Circle((0, 0), 1.0), pk.Polygon([(0, 0), (1, 0), (0, 1)]), np.random.default_rng(0)]
+    assert judges.same(given, copy.deepcopy(given))
+    assert not judges.same({1}, {2})
+    assert not judges.same(pk.Circle((0, 0), 1.0), pk.Circle((0, 1), 1.0))
+
+
+def test_the_arguments_that_went_wrong_can_be_tried_again():
+    def circles(_found, true, _pairs, _tolerance):
+        return 1.0 * all(shape.kind == "circle" for shape in true)
+
+    answer = pk.checks.weighted_accuracy(lambda *_arguments: 2.0)
+    assert pk.checks.weighted_accuracy.reference(*answer.args) == 1.0
+    assert "a Polygon" not in pk.checks.weighted_accuracy(circles).says
 
 
 def test_a_number_as_text_is_html_with_sign_and_word():
@@ -246,3 +348,10 @@ def test_an_argument_that_was_left_out_is_named_as_that():
     assert answer.fault == "asks for other arguments"
     inside = TASKS["drive_step"](lambda *_arguments: (lambda one: one)())
     assert inside.fault == "raises TypeError"
+
+
+@pytest.mark.parametrize("style", STYLES)
+@pytest.mark.parametrize("task", TASKS)
+def test_a_right_answer_is_right_in_every_form(task, style):
+    answer = TASKS[task](styled(getattr(right, task))[style])
+    assert answer.right, answer

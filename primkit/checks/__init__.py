@@ -38,7 +38,7 @@ __all__ += [
     "drive_step",
     "share_seen",
 ]
-__all__ += ["drive_step", "share_seen", "Answer", "Check", "Fault", "TASKS"]
+__all__ += ["Answer", "Check", "Fault", "TASKS"]
 
 # Every task of the course, in its order: tests hold each of them against tests/answers.
 TASKS = tuple(task for name in __all__ if isinstance(task := globals().get(name), Check))

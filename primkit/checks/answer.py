@@ -39,9 +39,10 @@ Verdict = Literal["not attempted", "wrong", "error", "right"]
 SEED = 20  # the same cases for everybody, on every run
 
 CALL_SECONDS = 3.0  # for one call: what takes longer is a loop that never ends, or far too slow
-SEARCH_SECONDS, LIKENESS_SECONDS = 2.0, 0.5  # for the slip in the student's own code, and for one like it in ours
+SEARCH_SECONDS, LIKENESS_SECONDS = 3.0, 0.5  # for the slip in the student's own code, and for one like it in ours
 # For one call while slips are sought, because an edit can make a loop endless: this, and some times what it took.
 TRIED_SECONDS, TRIED_TIMES = 0.03, 8.0
+RAISED_SECONDS = 0.015  # what a call that raised is taken to need when it is right
 
 VERDICT_SIGNS = {"not attempted": "○", "wrong": "✗", "error": "!", "right": "✓"}
 # Okabe and Ito's colours, drawn towards the page's own letters: so they can be read in a light theme and in a dark one.
@@ -186,13 +187,13 @@ class Check:
                     f"{self._write_call(args)} {raised.told}.\nKeep the arguments that are given: {self.name}({names})."
                 )
                 return Answer("error", says, "asks for other arguments", args)
-            if not same(given, args):
+            if got is not None and not raised and not same(given, args):
                 says = f"{self._write_call(args)} changes what it is given: work on a copy."
                 return Answer("wrong", says, "changes its arguments", args)
             warned += [f"{message} in {line}" for message, line in dict.fromkeys(done.warned)]
             expected = self.reference(*copy.deepcopy(args))
             off = f"raised {raised.says}" if raised else self.judge(got, expected, args)
-            cases.append(Case(args, got, expected, off, 0.0 if raised else done.seconds))
+            cases.append(Case(args, got, expected, off, RAISED_SECONDS if raised else done.seconds))
             if raised and isinstance(raised.error, OutOfTime):
                 break  # nobody waits for the others
         return self._decide(mine, cases, warned)

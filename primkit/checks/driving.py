@@ -206,6 +206,7 @@ def _drawn_outlines(rng: np.random.Generator) -> Iterator[Args]:
     yield wall, np.empty((0, 2)), 0.012
     yield wall, np.vstack([wall[:1]] * 5), 0.012
     yield np.array([(0.0, 0.0), (0.01, 0.0)]), np.array([(0.005, 0.001)]), 0.012
+    yield np.array([(0.0, 0.0), (0.0, 0.25)]), np.array([(0.125, 0.0)]), 0.125  # exactly as far as the reach
     yield np.array([(0.0, 0.0)]), np.array([(0.011, 0.011)]), 0.012  # within reach along x and along y, but not away
     for n in range(RANDOM_CASES):
         center, radius, reach = rng.uniform(-0.3, 0.3, 2), rng.uniform(0.05, 0.15), float(rng.uniform(0.005, 0.02))

@@ -77,7 +77,8 @@ def _instead(node: ast.AST, used: set[str]) -> Iterator[tuple[str, ast.AST]]:
     match node:
         case ast.Compare(ops=ops):
             for n, op in enumerate(ops):
-                for other in next((group for group in COMPARISONS if type(op) in group), ()):
+                counted = isinstance(node.comparators[n], ast.Constant) and type(node.comparators[n].value) is int
+                for other in next((sum(COMPARISONS, ()) if counted else s for s in COMPARISONS if type(op) in s), ()):
                     if other is not type(op):
                         yield "comparison", _with(node, ops=[*ops[:n], other(), *ops[n + 1 :]])
         case ast.BoolOp(op=op):
@@ -123,12 +124,12 @@ def _other_calls(node: ast.Call) -> Iterator[tuple[str, ast.AST]]:
     if name in DEGREE_CALLS:
         yield "degrees", node.args[0]
         yield "degrees", _renamed(node, "degrees" if name in ("radians", "deg2rad") else "radians")
-    for n, keyword in enumerate(node.keywords):
-        if keyword.arg == "axis":
-            rest = [*node.keywords[:n], *node.keywords[n + 1 :]]
-            yield "axis", _with(node, keywords=rest)
-            for axis in (0, 1, 2):
-                yield "axis", _with(node, keywords=[*rest, ast.keyword("axis", ast.Constant(axis))])
+    others = [keyword for keyword in node.keywords if keyword.arg != "axis"]
+    if len(others) < len(node.keywords) or name in ALONG:
+        for axis in (0, 1, 2):
+            yield "axis", _with(node, keywords=[*others, ast.keyword("axis", ast.Constant(axis))])
+    if len(others) < len(node.keywords):
+        yield "axis", _with(node, keywords=others)
     for n in range(len(node.args) - 1):
         yield "order", _with(node, args=_swapped(node.args, n, n + 1))
 
@@ -153,10 +154,6 @@ def _more(node: ast.AST, parent: ast.AST, field: str) -> Iterator[tuple[str, ast
     if not isinstance(node, ast.expr) or isinstance(getattr(node, "ctx", None), ast.Store):
         return
     name, outer = _called(node), _called(parent)
-    if name in ALONG and not any(keyword.arg == "axis" for keyword in node.keywords):  # type: ignore[attr-defined]
-        for axis in (0, 1, 2):
-            keyword = ast.keyword("axis", ast.Constant(axis))
-            yield "axis", _with(node, keywords=[*node.keywords, keyword])  # type: ignore[attr-defined]
     if name in ARCS:
         yield "degrees", _call("radians", node)
     if (outer in TURNS or outer == "exp") and field == "args":

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..shapes import Circle
+from ..shapes import Circle, Polygon
 
 Judge = Callable[[Any, Any, tuple[Any, ...]], "str | None"]
 
@@ -176,8 +176,10 @@ def same(a: Any, b: Any) -> bool:
         return np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
     if isinstance(a, (tuple, list)) and isinstance(b, (tuple, list)):
         return len(a) == len(b) and all(map(same, a, b))
-    if isinstance(a, (int, float, str)):
+    if isinstance(a, (int, float, str, set)):
         return bool(a == b)
+    if hasattr(a, "__dict__"):  # what was worked out meanwhile is no change
+        return all(same(value, vars(b)[name]) for name, value in vars(a).items() if name in vars(b))
     return True
 
 
@@ -202,6 +204,8 @@ def shown(value: Any) -> str:
         return f"{float(value) + 0.0:.4g}"  # -0.0 as the 0 that it means
     elif isinstance(value, (int, np.integer)) or value is None:
         return str(value)
+    elif isinstance(value, Polygon):
+        text = f"{value.kind} at {shown(np.round(value.centroid, 9))}"
     else:
         text = repr(value) if isinstance(value, (str, Circle)) else f"a {type(value).__name__}"
     return text if len(text) <= 90 else text[:87] + "..."

@@ -68,6 +68,9 @@ def _segment_cases(rng: np.random.Generator) -> Iterator[Args]:
     yield np.array([0.0, 0.3]), east, *wall  # beside
     yield np.zeros(2), east, np.array([0.1, 0.1]), np.array([0.3, 0.1])  # parallel
     yield np.array([0.1, 0.0]), np.array([0.6, 0.8]), np.array([0.0, 0.2]), np.array([0.5, 0.2])
+    for y in (0.25, -0.25):  # at a wall's end: it belongs to the wall, or beams would slip through at corners
+        yield np.zeros(2), east, np.array([0.25, 0.0]), np.array([0.25, y])
+        yield np.zeros(2), east, np.array([0.25, y]), np.array([0.25, 0.0])
 
     def draw(n: int) -> Args | None:
         origin, a, b = rng.uniform(-0.5, 0.5, (3, 2))

@@ -23,7 +23,7 @@ from ..report import CENTER_WEIGHT, DIMENSION_WEIGHT, SHAPE_WEIGHT
 from ..shapes import Circle, Polygon, Shape
 from ..world import random_world
 from .answer import Check, Fault
-from .cases import UNDECIDED, Args, random_cases
+from .cases import UNDECIDED, Args, around, random_cases
 from .judges import CLOSE, no_return, number, shown
 
 Pairs = list[tuple[int, int]]
@@ -59,6 +59,8 @@ def _match_cases(rng: np.random.Generator) -> Iterator[Args]:
     yield np.array([(0.01, 0.0), (0.0, 0.02)]), np.array([a, b]), GATE  # two for the same
     yield np.array([a, b, c]), np.array([a]), GATE
     yield np.array([(0.3, 0.0)]), np.array([a]), GATE
+    yield np.array([(0.125, 0.0)]), np.array([a]), 0.125  # exactly as far as the gate
+    yield np.array([a, (-0.04, 0.03)]), np.array([a, (0.05, 0.0)]), GATE  # other pairs have the least squares
     yield np.empty((0, 2)), np.array([a, b]), GATE
     yield np.array([a, b]), np.empty((0, 2)), GATE
 
@@ -213,6 +215,8 @@ def _score_with(
 def _dimension_errors(found: Shape, true: Shape, *, shift: bool = True) -> list[float]:
     """Return found - true, metres; of three sides and more under the best cyclic shift."""
     ours, theirs = np.array(found.dimensions), np.array(true.dimensions)
+    if len(ours) != len(theirs):  # only a faulty way compares across kinds
+        return [a - b for a, b in zip(ours.tolist(), theirs.tolist(), strict=False)]
     shifts = range(len(theirs)) if shift and len(theirs) >= 3 else [0]
     return min(((np.roll(ours, n) - theirs) for n in shifts), key=lambda e: float(np.abs(e).sum())).tolist()
 
@@ -227,6 +231,9 @@ def _score_cases(rng: np.random.Generator) -> Iterator[Args]:
     yield [], [a, b], [], TOLERANCE
     square = Polygon([(-0.03, -0.03), (0.03, -0.03), (0.03, 0.03), (-0.03, 0.03)])
     yield [a], [square], [(0, 0)], TOLERANCE  # of the wrong kind, with a radius as long as the sides
+    triangle = Polygon([(-0.03, -0.03), (0.03, -0.03), (0.0, 0.06)])
+    yield [square], [triangle], [(0, 0)], TOLERANCE  # both are polygons, and not of the same kind
+    yield [Circle((0.125, 0.0), 0.25)], [Circle((0.0, 0.0), 0.375)], [(0, 0)], 0.125  # off by exactly the tolerance
 
     def draw(_n: int) -> Args | None:
         true = list(random_world(int(rng.integers(1, 5)), rng=rng).shapes)
@@ -244,11 +251,16 @@ def _score_cases(rng: np.random.Generator) -> Iterator[Args]:
 def _near(shape: Shape, rng: np.random.Generator) -> Shape:
     """Return a shape as it could be found: moved, larger or smaller, from another corner on, or of another kind."""
     offset, larger = rng.normal(0, 0.004, 2), float(rng.normal(1, 0.04))
-    if rng.random() < 0.15:
-        return Circle(shape.centroid + offset, 0.05)
+    other = rng.random() < 0.15
     if isinstance(shape, Circle):
+        bearings = 2 * np.pi * np.arange(3) / 3
+        if other:
+            return Polygon(around(shape.center + offset, shape.radius, bearings))
         return Circle(shape.center + offset, larger * shape.radius)
     corners = np.roll(shape.vertices - shape.centroid, int(rng.integers(len(shape.vertices))), axis=0)
+    if other:
+        few = len(corners) == 3 or rng.random() < 0.5
+        return Circle(shape.centroid + offset, 0.05) if few else Polygon(shape.centroid + offset + corners[1:])
     return Polygon(shape.centroid + offset + larger * corners)
 
 

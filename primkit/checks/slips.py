@@ -30,7 +30,8 @@ import numpy as np
 from .calls import Line, line_at
 from .edits import edits
 
-PROBES = 6  # wrong cases that an edit is tried on first
+PROBES = 6  # wrong cases that an edit is tried on first, and right ones that a part must spare
+SLOW = 0.004  # s: of what takes longer, one case must do for a first look
 PARTS = 6  # edits that mend some of these, which are tried on all cases when none mends all
 LEAST_PART = 0.2  # of the wrong cases that a slip must mend to be told
 MOST_TOLD = 3
@@ -70,15 +71,15 @@ def find_slips(
 ) -> list[Slip]:
     """Return slips that mend every wrong case, the likely ones first; else up to two after each other that mend some.
 
-    ``holds(function, case, seconds)`` tells whether a function is right in a case, and takes at most so long; the whole
-    search takes at most ``seconds``. The lines about ``near`` are tried first.
+    ``holds(function, case, seconds)`` tells whether a function is right in a case, and takes at most so long. The whole
+    search takes at most ``seconds`` of processor time. The lines about ``near`` are tried first.
     """
     code = _Code.of(mine, near)
-    end, found = time.monotonic() + seconds, list[Slip]()
+    end, found = time.process_time() + seconds, list[Slip]()
     while code and wrong and len(found) < 2:
 
         def mended(edited: Any, cases: Sequence[Any]) -> list[Any]:
-            return [c for c in cases if (left := end - time.monotonic()) > 0 and holds(edited, c, left)]
+            return [c for c in cases if (left := end - time.process_time()) > 0 and holds(edited, c, left)]
 
         whole, part = _search(code, wrong, right, mended, end)
         if whole:
@@ -100,23 +101,26 @@ def _search(
     end: float,
 ) -> tuple[list[Slip], tuple[Slip, _Code, list[Any]] | None]:
     """Try each edit on a few cases, then those that did best on all; return what mends all, or else what mends most."""
-    probes = [wrong[n * (len(wrong) - 1) // (PROBES - 1)] for n in range(PROBES)] if len(wrong) > PROBES else wrong
-    whole: dict[str, Slip] = {}
+    probes, spared = _quick(wrong), _quick(right)
+    first = probes[: 1 if probes[0].seconds > SLOW else 3]
+    whole: list[Slip] = []
     parts: list[tuple[int, Slip, _Code]] = []
     for rank in (0, 1):
         for kind, number in edits(code.tree, code.name, rank, code.near):
-            edited = code.build() if time.monotonic() < end and kind not in whole else None
+            edited = code.build() if time.process_time() < end else None
             if edited is None:
                 continue
-            count = len(mended(edited, probes[:2])) and len(mended(edited, probes))
+            count = len(mended(edited, first)) and len(mended(edited, probes))
+            if not count or len(mended(edited, spared)) < len(spared):
+                continue
             slip = Slip(kind, line_at(code.filename, number), len(wrong))
-            if count < len(probes):
-                if count and (len(parts) < PARTS or count > parts[-1][0]):
-                    parts = sorted([*parts, (count, slip, copy.deepcopy(code))], key=lambda part: -part[0])[:PARTS]
-            elif all(mended(edited, [case]) for case in wrong) and all(mended(edited, [case]) for case in right):
-                whole[kind] = slip
-        if whole:
-            return list(whole.values()), None
+            if count == len(probes) and all(mended(edited, [case]) for case in (*wrong, *right)):
+                whole.append(slip)
+            elif len(parts) < PARTS or count > parts[-1][0]:
+                parts = sorted([*parts, (count, slip, copy.deepcopy(code))], key=lambda part: -part[0])[:PARTS]
+        if whole:  # one of each kind first
+            kinds = [slip.kind for slip in whole]
+            return sorted(dict.fromkeys(whole), key=lambda slip: whole.index(slip) != kinds.index(slip.kind)), None
     best: tuple[Slip, _Code, list[Any]] | None = None
     for _, slip, edited_code in parts:
         cases = mended(edited_code.build(), wrong)
@@ -124,6 +128,13 @@ def _search(
         if more and len(mended(edited_code.build(), right)) == len(right):
             best = replace(slip, mends=len(cases)), edited_code, cases
     return [], best
+
+
+def _quick(cases: Sequence[Any]) -> list[Any]:
+    """Return a few of the cases, the same in each run; where a call takes long, of the quicker half."""
+    by_time = sorted(cases, key=lambda case: int(case.seconds / SLOW))
+    half = len(by_time) // 2
+    return [by_time[n * half // (PROBES - 1)] for n in range(PROBES)] if half > PROBES else by_time[:PROBES]
 
 
 @dataclass

@@ -58,6 +58,7 @@ def clouds(rng: np.random.Generator) -> Iterator[Args]:
     yield (np.column_stack([steps, np.full(11, 0.2)]),)
     yield (np.column_stack([np.full(11, 0.3), steps]),)  # upright
     yield (np.column_stack([steps, 0.5 * steps + 0.1]),)
+    yield (np.array([(0.25, 0.0), (0.0, 0.25)]),)  # two fix a line
     yield (np.full((4, 2), 0.25),)  # the same point four times
     yield (np.array([(0.1, 0.2)]),)
     for _ in range(RANDOM_CASES):

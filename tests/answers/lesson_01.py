@@ -35,7 +35,10 @@ def segment_by_geos(origin, direction, a, b):
 
 
 def segment_behind(origin, direction, a, b):
-    t, s = np.linalg.solve(np.column_stack([direction, a - b]) + 1e-15, a - origin)
+    matrix = np.column_stack([direction, a - b])
+    if abs(np.linalg.det(matrix)) < 1e-12:
+        return INF
+    t, s = np.linalg.solve(matrix, a - origin)
     return t if 0 <= s <= 1 else INF
 
 
@@ -53,6 +56,15 @@ def segment_share(origin, direction, a, b):
         return INF
     t, s = np.linalg.solve(matrix, a - origin)
     return s if t >= 0 and 0 <= s <= 1 else INF
+
+
+def segment_between_ends(origin, direction, a, b):
+    """Nothing at a wall's ends: a beam at a corner slips through."""
+    matrix = np.column_stack([direction, a - b])
+    if abs(np.linalg.det(matrix)) < 1e-12:
+        return INF
+    t, s = np.linalg.solve(matrix, a - origin)
+    return t if t >= 0 and 0 < s < 1 else INF
 
 
 def segment_none(origin, direction, a, b):
@@ -149,6 +161,7 @@ ANSWERS = {
         "right": {"solving": segment_by_solving, "turning": segment_by_turning, "geos": segment_by_geos},
         "wrong": {
             "behind": (segment_behind, "Walls behind the robot"),
+            "between the ends": (segment_between_ends, "0 < s < 1"),
             "endless": (segment_endless, "beyond its ends"),
             "share": (segment_share, "That is s, the place along the wall"),
             "point": (lambda origin, direction, a, b: (a + b) / 2, "Two numbers came back"),

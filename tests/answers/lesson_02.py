@@ -81,6 +81,7 @@ def occupy_without_return(cells, pose, angles, ranges, resolution):
 
 
 def occupy_one_by_one(cells, pose, angles, ranges, resolution):
+    cells = set(cells)
     for a, r in zip(angles, ranges, strict=True):
         cells.add((math.floor((pose[0] + r * math.cos(pose[2] + a)) / resolution), 0))
     return cells
@@ -144,9 +145,9 @@ ANSWERS = {
         "right": {
             "complex numbers": occupy_by_complex_numbers,
             "turning": occupy_by_turning,
-            "in place": occupy_in_place,
         },
         "wrong": {
+            "in place": (occupy_in_place, "changes what it is given: work on a copy"),
             "misses": (occupy_with_misses, "reads inf and occupies no cell"),
             "infinity": (occupy_with_infinity, "reads inf and occupies no cell"),
             "only new": (

@@ -260,6 +260,7 @@ ANSWERS = {
             "column": (fit_by_svd(1, column=True), "not its columns"),
             "always": (fit_always, "Fewer than two different points"),
             "ends": (fit_through_the_ends, "in "),
+            "three": (lambda points: None if len(points) < 3 else fit_best(points), "got None, expected"),
         },
         "error": {"no points": (lambda points: through(points[0], points[1]), "raised IndexError")},
     },

@@ -51,6 +51,22 @@ def by_assignment(found, true, gate):
     )
 
 
+def least_squares(found, true, gate):
+    cost = cdist(found, true) ** 2
+    cost[cost > gate**2] = 1000.0
+    return [(f, t) for f, t in zip(*linear_sum_assignment(cost), strict=True) if cost[f, t] <= gate**2]
+
+
+def more_found_than_true(found, true, gate):
+    """The lesson's own words, ``itertools.permutations``, where they give nothing: more was found than there is."""
+    best, least = None, math.inf
+    for chosen in itertools.permutations(range(len(true)), len(found)):
+        total = sum(math.dist(found[f], true[t]) for f, t in enumerate(chosen))
+        if total < least:
+            best, least = chosen, total
+    return [(f, best[f]) for f in range(len(found)) if math.dist(found[f], true[best[f]]) <= gate]
+
+
 def pairs_turned(found, true, gate):
     return [(t, f) for f, t in by_permutations(found, true, gate)]
 
@@ -125,6 +141,7 @@ def marks(
     paired=0,
     kind_first=False,
     any_kind=False,
+    kind=lambda shape: shape.kind,
 ):
     """Give each value of the truth a mark, one after the other, by looking up its partner."""
     partner = {t: found[f] for f, t in pairs}
@@ -133,7 +150,7 @@ def marks(
         mine = partner.get(t)
         if mine is None and not missed:
             continue
-        shape.append(mine is not None and mine.kind == truth.kind)
+        shape.append(mine is not None and kind(mine) == kind(truth))
         same = mine is not None and mine.kind == truth.kind
         there = same if kind_first else mine is not None
         center += [there and sided(mine.centroid[i] - truth.centroid[i]) <= tolerance for i in (0, 1)]
@@ -152,9 +169,11 @@ def in_list_order(found, true):
 
 
 def across_kinds(found, true):
-    """NumPy subtracts a list of sides from a single radius without a word."""
-    same = found.kind == true.kind
-    return side_errors(found, true) if same else np.subtract(found.dimensions, true.dimensions)
+    """Zip a list of sides with a single radius: neither says a word."""
+    if len(found.dimensions) == len(true.dimensions):
+        return side_errors(found, true)
+    errors = [a - b for a, b in zip(found.dimensions, true.dimensions, strict=False)]
+    return errors + [np.inf] * (len(true.dimensions) - len(errors))
 
 
 def by_distance(found, true, pairs, tolerance):
@@ -190,8 +209,14 @@ ANSWERS = {
             ),
             "nothing": (lambda found, true, gate: None, "is there a return?"),
             "not even one": (lambda found, true, gate: [], "got 0 pairs, 2 are possible"),
+            "least squares": (least_squares, "m in all; "),
+            "gate not reached": (
+                lambda found, true, gate: by_assignment(found, true, gate - 1e-9),
+                "got 0",
+            ),
         },
         "error": {
+            "more found than true": (more_found_than_true, "'NoneType' object is not subscriptable"),
             "an empty list": (
                 lambda found, true, gate: [(int(cdist(found, true)[:, t].argmin()), t) for t in range(len(true))],
                 "raised ValueError",
@@ -213,6 +238,18 @@ ANSWERS = {
             "across kinds": (wrong(any_kind=True, sides=across_kinds), "compared across kinds"),
             "kind first": (wrong(kind_first=True), "they count for every pair"),
             "counted": (counted, "For example weighted_accuracy("),
+            "of a type": (
+                wrong(kind=type),
+                "For example weighted_accuracy(found=[rectangle at (0, 0)], true=[triangle at (0, 0)]",
+            ),
+            "a circle or none": (
+                wrong(kind=lambda shape: shape.kind == "circle"),
+                "For example weighted_accuracy(found=[rectangle at (0, 0)], true=[triangle at (0, 0)]",
+            ),
+            "below the tolerance": (
+                lambda found, true, pairs, tolerance: marks(found, true, pairs, tolerance - 1e-9),
+                "tolerance=0.125): got",
+            ),
             "nothing": (lambda found, true, pairs, tolerance: None, "is there a return?"),
         },
         "error": {"nothing found": (by_matches, "raised ZeroDivisionError")},

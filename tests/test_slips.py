@@ -1,0 +1,199 @@
+"""Slips: which of them a check names, in which line, and what it says when it cannot know."""
+
+import json
+import linecache
+import re
+import textwrap
+from collections import Counter
+
+import numpy as np
+import pytest
+
+import primkit as pk
+from primkit.checks import slips
+from tests.slips import make, named, right
+
+CHECKS = named.checks()
+MUTANTS = make.mutants()
+LESSONS = {task.name for task in pk.checks.TASKS}
+OPEN = [slip for slip in MUTANTS if slip["half"] == "open" and slip["task"] in LESSONS]
+TO_NAME = 0.9
+
+
+def written(source, **names):
+    """Return the function that a student wrote in a cell."""
+    source = textwrap.dedent(source)
+    file, scope = f"<cell {len(linecache.cache)}>", {"np": np, "pk": pk, "__name__": "__main__", **names}
+    linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
+    exec(compile(source, file, "exec"), scope)
+    return scope[re.findall(r"^def (\w+)", source, re.MULTILINE)[-1]]
+
+
+def test_the_list_is_what_the_script_makes():
+    rows = json.loads((make.FOLDER / "slips.json").read_text(encoding="utf-8"))
+    assert rows == [{key: value for key, value in slip.items() if key != "code"} for slip in MUTANTS]
+    assert Counter(row["task"] for row in rows) == dict.fromkeys(CHECKS, make.EACH)
+    assert len(CHECKS) == 35
+
+
+@pytest.mark.parametrize("task", sorted(LESSONS))
+def test_what_the_slips_are_made_of_is_right(task):
+    assert CHECKS[task][0](getattr(right, task)).right
+
+
+@pytest.mark.parametrize("name", sorted(make.EQUIVALENT))
+def test_what_is_taken_out_passes(name):
+    slip = next(slip for slip in MUTANTS if slip["name"] == name)
+    assert named.verdict(slip, CHECKS) == ("right", "")
+
+
+def test_a_slip_in_a_lesson_s_task_is_named():
+    told = {slip["name"]: named.verdict(slip, CHECKS)[0] for slip in OPEN if slip["name"] not in make.EQUIVALENT}
+    assert "right" not in told.values(), told
+    assert sum(word == "named" for word in told.values()) >= TO_NAME * len(told), told
+
+
+def test_the_word_must_not_come_from_the_quoted_line():
+    slip = {"name": "x", "task": "f", "class": "axis", "code": "def f(x):\n    return x.sum(axis=0)"}
+    check = pk.checks.Check("f", lambda x: x + 1, lambda _rng: [(np.ones(2),)], pk.checks.judges.array())
+    word, says = named.verdict(slip, {"f": [check]})
+    assert word == "missed", says
+
+
+SEGMENT = """
+    def ray_segment(origin, direction, a, b):
+        side, to_a = b - a, a - origin
+        cross = direction[0] * side[1] - direction[1] * side[0]
+        if cross == 0:
+            return np.inf
+        t = (to_a[0] * side[1] - to_a[1] * side[0]) / cross
+        s = (to_a[0] * direction[1] - to_a[1] * direction[0]) / cross
+        return t if t >= 0 and 0 <= s <= 1 else np.inf
+"""
+STUDENTS = [  # (task, what the student wrote, the line, words in what is told)
+    ("ray_segment", SEGMENT.replace("t >= 0", "t <= 0"), 9, "a comparison"),
+    ("ray_segment", SEGMENT.replace("0 <= s <= 1", "0 < s < 1"), 9, "a comparison"),
+    ("ray_segment", SEGMENT.replace("a - origin", "origin - a"), 3, "an order"),
+    (
+        "line_through",
+        """
+        def line_through(p, q):
+            if np.all(p == q):
+                return None
+            angle = np.degrees(np.arctan2(q[1] - p[1], q[0] - p[0])) + 90
+            n = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+            return angle, n @ p
+        """,
+        7,
+        "degrees and radians",
+    ),
+    (
+        "line_through",
+        """
+        def line_through(p, q):
+            if np.all(p == q):
+                return None
+            angle = np.arctan2(q[0] - p[0], q[1] - p[1]) + np.pi / 2
+            return angle, p @ np.array([np.cos(angle), np.sin(angle)])
+        """,
+        5,
+        "an order",
+    ),
+    (
+        "sides_and_centroid",
+        """
+        def sides_and_centroid(corners):
+            after = np.roll(corners, -1)
+            cross = corners[:, 0] * after[:, 1] - after[:, 0] * corners[:, 1]
+            sides = np.hypot(*(after - corners).T)
+            return sides, ((corners + after) * cross[:, None]).sum(axis=0) / (3 * cross.sum())
+        """,
+        3,
+        "an axis",
+    ),
+    (
+        "weighted_accuracy",
+        """
+        def weighted_accuracy(found, true, pairs, tolerance):
+            n_center = n_shape = n_size = 0
+            for f, t in pairs:
+                n_center += sum(found[f].centroid - true[t].centroid <= tolerance)
+                if found[f].kind == true[t].kind:
+                    n_shape += 1
+                    errors = [
+                        np.abs(np.roll(found[f].dimensions, n) - true[t].dimensions)
+                        for n in range(len(true[t].dimensions))
+                    ]
+                    n_size += sum(min(errors, key=sum) <= tolerance)
+            sizes = sum(len(shape.dimensions) for shape in true)
+            alarms = len(found) - len(pairs)
+            return 0.4 * n_shape / (len(true) + alarms) + 0.3 * n_center / (2 * len(true)) + 0.3 * n_size / sizes
+        """,
+        5,
+        "a sign",
+    ),
+]
+
+
+@pytest.mark.parametrize(("task", "source", "line", "words"), STUDENTS)
+def test_a_slip_is_told_with_its_line(task, source, line, words):
+    answer = CHECKS[task][0](written(source))
+    assert words in answer.says, answer
+    assert f" at line {line}, `" in answer.says, answer
+
+
+def test_two_slips_at_once_are_told_one_after_the_other():
+    two = SEGMENT.replace("t >= 0", "t <= 0").replace("if cross == 0", "if cross <= 0")
+    says = CHECKS["ray_segment"][0](written(two)).says
+    first, then = re.search(r"Look at (.*)\. \d+ of the \d+ come from there\. Then look at (.*)\.", says).groups()
+    assert {first[:6], then[:6]} == {"line 5", "line 9"}
+
+
+def test_a_slip_in_a_helper_is_found():
+    source = """
+        def cross(u, v):
+            return u[0] * v[1] + u[1] * v[0]
+
+        def ray_segment(origin, direction, a, b):
+            side, to_a = b - a, a - origin
+            if cross(direction, side) == 0:
+                return np.inf
+            t, s = (cross(to_a, other) / cross(direction, side) for other in (side, direction))
+            return t if t >= 0 and 0 <= s <= 1 else np.inf
+    """
+    assert (
+        "\nLook at line 3, `return u[0] * v[1] + u[1] * v[0]`: a sign" in CHECKS["ray_segment"][0](written(source)).says
+    )
+
+
+def test_where_no_code_can_be_read_it_is_compared_with_the_plain_way():
+    scope = {"np": np}
+    exec(textwrap.dedent(SEGMENT).replace("t >= 0", "t <= 0"), scope)
+    answer = CHECKS["ray_segment"][0](scope["ray_segment"])
+    assert answer.says.endswith("That is what a plain way gives with one slip in it: a comparison, or a sign.") or (
+        "one slip in it: a comparison" in answer.says
+    )
+
+
+def test_another_idea_is_no_slip():
+    """A mean of the points is no circle's centre: nothing small mends it, and nothing of the kind is said."""
+    answer = CHECKS["fit_circle"][0](
+        written("""
+        def fit_circle(points):
+            center = points.mean(axis=0)
+            return *center, np.hypot(*(points - center).T).mean()
+        """)
+    )
+    assert "Look at line" not in answer.says
+    assert "one slip" not in answer.says
+
+
+def test_the_tree_is_as_before_after_all_edits():
+    import ast
+
+    tree = ast.parse(textwrap.dedent(SEGMENT))
+    before = ast.dump(tree)
+    for rank in (0, 1):
+        kinds = {kind for kind, _line in slips.edits(tree, "ray_segment", rank)}
+        assert kinds <= set(make.CLASSES)
+        assert ast.dump(tree) == before
