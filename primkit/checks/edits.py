@@ -77,7 +77,8 @@ def _instead(node: ast.AST, used: set[str]) -> Iterator[tuple[str, ast.AST]]:
     match node:
         case ast.Compare(ops=ops):
             for n, op in enumerate(ops):
-                counted = isinstance(node.comparators[n], ast.Constant) and type(node.comparators[n].value) is int
+                bound = node.comparators[n]
+                counted = isinstance(bound, ast.Constant) and type(bound.value) is int
                 for other in next((sum(COMPARISONS, ()) if counted else s for s in COMPARISONS if type(op) in s), ()):
                     if other is not type(op):
                         yield "comparison", _with(node, ops=[*ops[:n], other(), *ops[n + 1 :]])

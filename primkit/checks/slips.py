@@ -31,7 +31,7 @@ from .calls import Line, line_at
 from .edits import edits
 
 PROBES = 6  # wrong cases that an edit is tried on first, and right ones that a part must spare
-SLOW = 0.004  # s: of what takes longer, one case must do for a first look
+SLOW_CASE = 0.004  # s: of what takes longer, one case must do for a first look
 PARTS = 6  # edits that mend some of these, which are tried on all cases when none mends all
 LEAST_PART = 0.2  # of the wrong cases that a slip must mend to be told
 MOST_TOLD = 3
@@ -102,7 +102,7 @@ def _search(
 ) -> tuple[list[Slip], tuple[Slip, _Code, list[Any]] | None]:
     """Try each edit on a few cases, then those that did best on all; return what mends all, or else what mends most."""
     probes, spared = _quick(wrong), _quick(right)
-    first = probes[: 1 if probes[0].seconds > SLOW else 3]
+    first = probes[: 1 if probes[0].seconds > SLOW_CASE else 3]
     whole: list[Slip] = []
     parts: list[tuple[int, Slip, _Code]] = []
     for rank in (0, 1):
@@ -132,7 +132,7 @@ def _search(
 
 def _quick(cases: Sequence[Any]) -> list[Any]:
     """Return a few of the cases, the same in each run; where a call takes long, of the quicker half."""
-    by_time = sorted(cases, key=lambda case: int(case.seconds / SLOW))
+    by_time = sorted(cases, key=lambda case: int(case.seconds / SLOW_CASE))
     half = len(by_time) // 2
     return [by_time[n * half // (PROBES - 1)] for n in range(PROBES)] if half > PROBES else by_time[:PROBES]
 

@@ -152,8 +152,8 @@ def _tell(seen: Overview) -> Iterator[str]:
     yield f"Scores: {_spread(list(seen.scores.values()), seen.of)}"
     if kinds := seen.kinds():
         alike = sum(len(kind.students) for kind in kinds)
-        yield f"{count(alike, 'wrong answer')} of {count(len(kinds), 'kind')}: a comment on one, in {KINDS_FILE}, reaches"
-        yield f"all who gave such an answer by `primkit teach hand-back {seen.name}`"
+        yield f"{count(alike, 'wrong answer')} of {count(len(kinds), 'kind')}: a comment on one, in {KINDS_FILE},"
+        yield f"reaches all who gave such an answer by `primkit teach hand-back {seen.name}`"
     if seen.faults:
         yield ""
         yield f"To look at ({len(seen.faults)}):"
