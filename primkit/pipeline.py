@@ -125,7 +125,9 @@ def find_shapes(
     Parameters
     ----------
     points : Grid, or array_like, shape (N, 2)
-        Metres, in any order.
+        Metres, in any order. A grid knows which scan saw each: points of a scan whose pose is wrong err together, and
+        the deviations tell by how much. Of points alone nobody knows, and what they scatter beyond the cells, or
+        ``noise_std``, is taken as shared: their deviations are wider.
     n_shapes : int, optional
         How many shapes there are; found when it is not given. ``PAPER`` then takes K-Means' best silhouette.
         Linking finds the number by itself: with it, and the published measuring, this is not used.

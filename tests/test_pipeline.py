@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import primkit as pk
+from primkit.arguments import LikelyWrong
 from primkit.pipeline import _explain_all
 from primkit.robust.regroup import explained
 from primkit.robust.scatter import spread_of
@@ -69,6 +70,26 @@ def test_the_noise_may_be_told():
     found = pk.find_shapes(points, rng=0)
     for detections in (told, found):
         assert pk.evaluate(detections, world, 0.006).weighted_accuracy > 0.95
+
+
+def test_e17_noise_that_the_points_contradict_is_not_believed():
+    """Told 0.1 mm where it is 5 mm, 4 shapes became 10 to 16; now it is as if nothing had been told, and said so."""
+    points = points_of(pk.random_world(4, rng=6), noise_std=0.005)
+    with pytest.warns(LikelyWrong, match=r"^noise_std is contradicted by the points, which scatter [5-9]\.\d times"):
+        told = pk.find_shapes(points, settings=pk.Settings(noise_std=0.0001), rng=0)
+    found = pk.find_shapes(points, rng=0)
+    assert [one.shape for one in told] == [one.shape for one in found]
+    assert len(found) == 4
+    for one, other in zip(told, found, strict=True):
+        np.testing.assert_allclose(one.center_std, other.center_std, rtol=0.01)
+
+
+@pytest.mark.parametrize("noise_std", [0.0, 0.001, 0.005, 0.01])
+def test_noise_that_is_told_rightly_is_believed_in_silence(noise_std):
+    """Warnings are errors here."""
+    for seed in range(3):
+        points = points_of(pk.random_world(3, style="free", rng=seed), noise_std=noise_std)
+        assert pk.find_shapes(points, settings=pk.Settings(noise_std=noise_std), rng=0)
 
 
 NOTHING = {

@@ -21,7 +21,7 @@ def test_the_same_points_enlarged_are_the_same_shapes(settings, k):
     for seed in range(1 if settings is pk.PAPER else 3):
         _, grid = board(seed, 0.002 * (seed % 2))
         told = 4 if settings is pk.PAPER else None
-        here = pk.find_shapes(grid, told, settings=settings, rng=0)
+        here = pk.find_shapes(grid.points(), told, settings=settings, rng=0)
         there = pk.find_shapes(grid.points() * k, told, settings=settings, resolution=0.001 * k, rng=0)
         assert len(here) >= 3
         assert apart_by(there, here, k) <= SAME
@@ -29,6 +29,17 @@ def test_the_same_points_enlarged_are_the_same_shapes(settings, k):
             np.testing.assert_allclose(numbers(new), np.array(numbers(old)) * k, rtol=1e-7, atol=1e-9 * k)
             assert len(new.points) == len(old.points)
             assert new.margin == pytest.approx(old.margin, rel=1e-6, nan_ok=True)
+
+
+@pytest.mark.parametrize("k", [0.1, 10])
+def test_noise_that_is_told_is_enlarged_too(k):
+    _, grid = board(1, 0.002)
+    here = pk.find_shapes(grid.points(), settings=pk.Settings(noise_std=0.002), rng=0)
+    how = pk.Settings(noise_std=0.002 * k)
+    there = pk.find_shapes(grid.points() * k, settings=how, resolution=0.001 * k, rng=0)
+    assert len(here) >= 3
+    for new, old in zip(there, here, strict=True):
+        np.testing.assert_allclose(numbers(new), np.array(numbers(old)) * k, rtol=1e-7, atol=1e-9 * k)
 
 
 @pytest.mark.parametrize("k", [0.01, 3, 8, 100])

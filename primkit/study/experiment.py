@@ -212,7 +212,7 @@ def _find(experiment: Experiment, scans: Scans, rng: np.random.Generator) -> tup
     # More shapes than points cannot be asked for, and a faulty sensor may see nearly nothing.
     is_told = settings.method == "published" and settings.grouping == "kmeans"
     told = min(len(world.shapes), len(points)) if is_told else None
-    return points, told, find_shapes(points, told, settings=settings, rng=rng)
+    return points, told, find_shapes(grid, told, settings=settings, rng=rng)
 
 
 def _found_as(report: Report, world: World) -> tuple[Kind | None, ...]:

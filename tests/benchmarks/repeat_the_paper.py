@@ -127,21 +127,23 @@ def robust():
 
 def coverage(n=200):
     """Print how often 95 % intervals of ROBUST hold the truth, on turned worlds with the rendered sensor."""
-    inside, wrong = {"center": [], "dimension": []}, 0
+    inside, wrong = {}, 0
     for seed in range(n):
         world = pk.random_world(1 + seed % 4, style="free", rng=seed)
         grid = pk.Grid()
         grid.add(seen(world, THEIRS))
-        found = pk.find_shapes(grid.points(), rng=0)
-        matches = {id(match.found): match for match in pk.evaluate(found, world).matches}
-        for one in found:
-            match = matches.get(id(one.shape))
-            if match is None or not match.kind_right:
-                wrong += 1
-                continue
-            inside["center"] += (np.abs(match.center_error) <= 1.96 * np.array(one.center_std)).tolist()
-            held = np.abs(match.dimension_error) <= 1.96 * np.array(one.dimension_std)
-            inside["dimension"] += held[np.isfinite(one.dimension_std)].tolist()
+        for name, what in (("grid", grid), ("points alone", grid.points())):
+            found = pk.find_shapes(what, rng=0)
+            matches = {id(match.found): match for match in pk.evaluate(found, world).matches}
+            for one in found:
+                match = matches.get(id(one.shape))
+                if match is None or not match.kind_right:
+                    wrong += what is grid
+                    continue
+                center = np.abs(match.center_error) <= 1.96 * np.array(one.center_std)
+                dimension = np.abs(match.dimension_error) <= 1.96 * np.array(one.dimension_std)
+                inside.setdefault(f"{name}, centre", []).extend(center)
+                inside.setdefault(f"{name}, dimension", []).extend(dimension[np.isfinite(one.dimension_std)])
     for name, held in inside.items():
         print(f"{name}: {np.mean(held):.3f} of {len(held)} intervals hold the truth")
     print(f"of a wrong kind, or where there is nothing: {wrong} on {n} worlds")
