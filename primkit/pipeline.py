@@ -292,11 +292,10 @@ def _explain_all(
 
     What is told is not believed where neighbours scatter much farther.
     """
-    seen = _in_steps(spread_of(np.vstack([np.empty((0, 2)), *together])))
     told = None if settings.noise_std is None else spread_across(settings.noise_std)
-    if told is not None and seen <= CONTRADICTED * told:
+    spread = last if last and told is None else _in_steps(spread_of(np.vstack([np.empty((0, 2)), *together])))
+    if told is not None and spread <= CONTRADICTED * told:
         return [explain(points, told) for points in together], told
-    spread = last or seen
     groups = [explain(points, spread) for points in together]
     for _ in range(SPREAD_ROUNDS):
         fitted = _spread_of_fits(groups)
@@ -306,7 +305,7 @@ def _explain_all(
         groups = [explain(points, spread) for points in together]
     if told is not None:
         times = f"{spread / told:.1f} times as far as that"
-        doubt(f"noise_std is contradicted by the points, which scatter {times}: they are believed instead", depth=3)
+        doubt(f"noise_std is contradicted by the points, which scatter {times}: they are believed instead", depth=4)
     return groups, spread
 
 
