@@ -11,7 +11,7 @@ the nearest texel of their pictures, though it passes beside the middle of it. T
 t is the way along m to the nearest side that faces the robot: back faces are not drawn, so that from inside a shape
 the others are seen. A circle is drawn as a cylinder with 36 faces. Neither z nor r is told below the sensor's least
 range, nor from its greatest on. The error, of millimetres, is always the same, and neighbours err alike. ``ROBUST``
-finds in the residuals only what a scan's points share: from a grid, 95 % intervals hold 96 % of the centres, and 90 %
+finds in the residuals only what a scan's points share: from a grid, 95 % intervals hold 95 % of the centres, and 89 %
 of the dimensions; from points alone, whose deviations are wider, more than 99 %.
 
 In:  a ``World``; poses, shape (P, 3): x [m], y [m], heading [rad]; the beams' bearings, shape (B,); limits in metres.
