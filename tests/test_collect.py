@@ -386,6 +386,19 @@ def test_archives_that_harm_cost_their_student_alone(course):
     assert says.count("leads out of its archive") == 4
 
 
+def test_files_beside_a_notebook_that_cannot_all_be_there(course):
+    """A file and a folder of one name, a folder with a notebook's name, names that Windows refuses."""
+    beside = ("a", "a/b.txt", "ps1.ipynb/x.txt", "c:d", "good/helper.py", "n" * 120, "what?.py")
+    files = {moodle("Ada Lovelace", 1, name): b"x" for name in beside}
+    answers, _ = placed(course, download(course, files | {moodle("Ada Lovelace", 1, "ps1.ipynb"): notebook("a")}))
+    assert answers == {"ada": "a"}
+    folder = course.root / "submitted" / "ada" / PS
+    assert sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()) == [
+        *("a", "good/helper.py", "ps1.ipynb")
+    ]
+    assert versions_of(course, PS)["ada"][0].notes[0].startswith("5 files beside it left out")
+
+
 def test_a_file_that_is_too_large_is_not_read(course, monkeypatch):
     monkeypatch.setattr(archives, "MOST_FILE", 2**20)
     files = {moodle("Ada Lovelace", 1, "ps1.ipynb"): b" " * 2**21, moodle("Li Wu", 2, "ps1.ipynb"): notebook("good")}

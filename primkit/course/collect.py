@@ -56,8 +56,8 @@ def collect(course: Course, name: str, paths: Iterable[Path]) -> tuple[list[Coll
     with tempfile.TemporaryDirectory(prefix="primkit-", ignore_cleanup_errors=True) as scratch:
         submissions: dict[tuple[str, ...], list[_File]] = defaultdict(list)
         for found in unpack(paths, Path(scratch)):
-            if isinstance(found, Found) and (sheet := worksheet_times(found.path)):
-                sheets |= sheet
+            if isinstance(found, Found) and len(found.parts) == 1 and (sheet := worksheet_times(found.path)):
+                sheets |= sheet  # given by the teacher, and in no archive
                 continue
             file = found if isinstance(found, Refused) else _whose(found, students)
             if isinstance(file, _File):
@@ -109,7 +109,7 @@ def _whose(found: Found, students: Sequence[Student]) -> _File | Refused:
         return Refused(found.place, f"names nobody in the list of students: {REMEDY}")
     place, meant, sender = claims[0]
     below = ((sender.rest,) if sender and sender.rest else ()) + parts[place + 1 :]
-    if not sender and not called(parts[place], students) and (parts[-1].endswith(".ipynb") or claims[-1][2]):
+    if not sender and not called(parts[place], students) and (parts[-1].lower().endswith(".ipynb") or claims[-1][2]):
         meant = meant + [each for _, others, _ in claims[1:] for each in others if each not in meant]
     by = f"{sender.lms.title()}'s name {sender.name!r}" if sender else repr(parts[place])
     return _decided(found, meant, parts[:place], below, sender, by)
@@ -220,11 +220,14 @@ def _beside(notebook: _File, files: Sequence[_File]) -> tuple[dict[str, bytes], 
         parts = file.below[len(folder) :]
         if file.below[: len(folder)] != folder or parts[-1] == TIMESTAMP or parts[-1].lower().endswith(".ipynb"):
             continue
-        taken += file.found.path.stat().st_size
-        if taken > MOST_BESIDE or len(beside) >= MOST_FILES or not all(map(_plain, parts)):
+        taken, path = taken + file.found.path.stat().st_size, "/".join(parts)
+        clash = any(part.lower().endswith(".ipynb") for part in parts) or any(
+            each.startswith(f"{path}/") or path.startswith(f"{each}/") for each in beside
+        )
+        if clash or taken > MOST_BESIDE or len(beside) >= MOST_FILES or not all(map(_plain, parts)):
             left_out += 1
         else:
-            beside["/".join(parts)] = file.found.path.read_bytes()
+            beside[path] = file.found.path.read_bytes()
     return beside, [f"{left_out} files beside it left out: too many, too large, or no names for files"] * bool(left_out)
 
 

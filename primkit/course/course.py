@@ -5,7 +5,8 @@ Out: a ``Course``: ``source/`` and ``grader/`` (with solutions: for the teacher 
      of students, and the salt of the personal maps.
 
 What nbgrader and ``primkit teach`` make in it: ``release/`` (for the students), ``personal/`` (one folder for each of
-them), ``submitted/``, ``autograded/``, ``feedback/``, ``gradebook.db`` and ``reports/``.
+them), ``collected/`` and ``submitted/``, ``autograded/``, ``feedback/``, ``handed_back/``, ``gradebook.db`` and
+``reports/``.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from .students import STUDENT_COLUMNS, Student, read_students
 ASSIGNMENTS = Path(__file__).resolve().parents[2] / "notebooks" / "assignments"
 COPIED_FOLDERS = ("source", "grader")  # solutions and hidden tests: neither is ever released
 SCANS = "my_scans.npz"  # a problem set that has this file is about a personal map
+GRADEBOOK_SECONDS = 300  # that one waits for the gradebook
 SALT = "salt.txt"
 STUDENTS = "students.csv"
 
@@ -180,6 +182,11 @@ class Course:
     def submitted(self, name: str) -> list[str]:
         """Return who handed in a problem set."""
         return sorted(path.parent.name for path in self.root.glob(f"submitted/*/{name}") if path.is_dir())
+
+    @property
+    def gradebook(self) -> str:
+        """Where nbgrader's gradebook is, for a program that waits until others have written into it."""
+        return f"sqlite:///{(self.root / 'gradebook.db').as_posix()}?timeout={GRADEBOOK_SECONDS}"
 
     def reports(self, name: str) -> Path:
         """Return the folder of what is said about a problem set; it is made."""

@@ -33,7 +33,6 @@ from .running import nbgrader
 
 SUBMISSION_SECONDS = 1800.0  # for one submission: far more than its cells' own limits come to
 SUBMISSION_BYTES = 4 * 2**30  # of memory for one submission, as in a new course's settings
-BASE_SECONDS = 300  # that a process waits for the gradebook while others write into it
 
 
 def grade(
@@ -168,8 +167,7 @@ def _hash(course: Course, name: str, student: str) -> str:
 
 def _run(course: Course, name: str, student: str) -> Iterator[Fault]:
     """Let nbgrader run a submission and make its feedback, once more if it fails; yield a fault if it fails again."""
-    base = f"--CourseDirectory.db_url=sqlite:///{(course.root / 'gradebook.db').as_posix()}?timeout={BASE_SECONDS}"
-    whose = (name, f"--student={student}", "--force", base)
+    whose = (name, f"--student={student}", "--force", f"--CourseDirectory.db_url={course.gradebook}")
     # The steps of today, also in a course that was made without some of them.
     run = ("autograde", *whose, f"--Autograde.sanitize_preprocessors={SANITIZE_STEPS}", f"--{LATE_STEP}")
     tell = ("generate_feedback", *whose, f"--GenerateFeedback.preprocessors={FEEDBACK_STEPS}")

@@ -92,7 +92,7 @@ def unmarked_answers(course: Course, name: str, student: str = "") -> dict[str, 
     found: dict[str, list[str]] = defaultdict(list)
     if not (course.root / "gradebook.db").is_file():
         return found
-    with Gradebook(f"sqlite:///{(course.root / 'gradebook.db').as_posix()}?timeout=300") as book:
+    with Gradebook(course.gradebook) as book:
         try:
             submissions = [book.find_submission(name, student)] if student else book.assignment_submissions(name)
         except MissingEntry:

@@ -140,7 +140,7 @@ def overview(course: Course, name: str) -> Overview:
     faults = [*strangers(course, name), *journal.faults()]
     cells = {student: _read_cells(course, name, student) for student in students}
     tasks = {cell: shown.mark for seen in cells.values() for cell, shown in seen.items() if shown.mark}
-    with Gradebook(f"sqlite:///{(course.root / 'gradebook.db').as_posix()}") as book:
+    with Gradebook(course.gradebook) as book:
         of = float(book.find_assignment(name).max_score)
         for student in students:
             try:

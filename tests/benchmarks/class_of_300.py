@@ -8,6 +8,7 @@ score is compared with the expected one, and every fault must have its line. Wha
 """
 
 import resource
+import subprocess
 import sys
 import tempfile
 import time
@@ -18,28 +19,33 @@ import numpy as np
 from tests.classes import PS, SETTINGS, hand_in
 from tests.submissions import ProblemSet
 from tests.test_class import killed_after
-from tests.test_teaching import in_a_new_process, table
+from tests.test_teaching import table
 
 
 def main(number, folder):
     course = Path(folder) / "course"
-    in_a_new_process(folder, "new-course", "course")
+    told(folder, "new-course", "course")
     config = course / "nbgrader_config.py"
     config.write_text(config.read_text("utf-8").replace("timeout = 60", "timeout = 20"), "utf-8")
     (course / "course.toml").write_text(SETTINGS)
-    in_a_new_process(course, "release", PS)
+    told(course, "release", PS)
     rows, class_ = hand_in(Path(folder), ProblemSet(course, PS), np.random.default_rng(300), number)
     (course / "students.csv").write_bytes(rows.encode("utf-16"))
-    in_a_new_process(course, "release", PS)
+    told(course, "release", PS)
     start, seconds = time.monotonic(), used()
-    said = in_a_new_process(course, "collect", PS, *(str(Path(folder, name)) for name in DOWNLOADS))
+    said = told(course, "collect", PS, *(str(Path(folder, name)) for name in DOWNLOADS))
     print(f"placed in {time.monotonic() - start:.0f} s, {used() - seconds:.0f} s of processor time", flush=True)
     start, seconds = time.monotonic(), used()
     killed_after(number // 4, course, "grade", PS)
-    said += in_a_new_process(course, "grade", PS)
+    said += told(course, "grade", PS)
     took, per = time.monotonic() - start, (used() - seconds) / number
     print(f"graded in {took:.0f} s, {per:.1f} s of processor time a submission (the killed run's own are not counted)")
-    said += in_a_new_process(course, "report", PS) + in_a_new_process(course, "hand-back", PS)
+    said += told(course, "report", PS) + told(course, "hand-back", PS)
+    return compare(course, class_, said)
+
+
+def compare(course, class_, said):
+    """Compare scores with the expected ones, and look for a line about each fault."""
     marks = {row["id"]: row for row in table(course / "reports" / PS / "class.csv")}
     wrong = {row["student"] for row in table(course / "reports" / PS / "wrong.csv")}
     off, untold = {}, []
@@ -50,11 +56,17 @@ def main(number, folder):
         lines = [line for line in said.splitlines() if student in line and trouble.says in line]
         if trouble.says and not lines and student not in wrong:
             untold.append((student, kind))
-    print(f"{number} submissions; not as expected: {off or 'none'}; faults without a line: {untold or 'none'}")
+    print(f"{len(class_)} submissions; not as expected: {off or 'none'}; faults without a line: {untold or 'none'}")
     return not off and not untold and "without a place" not in said
 
 
 DOWNLOADS = ("moodle.zip", "canvas.zip", "inbound")
+
+
+def told(course, *words):
+    """Run a command as a teacher does, however long it takes; return what it says."""
+    command = [sys.executable, "-m", "primkit", "teach", *words]
+    return subprocess.run(command, cwd=course, capture_output=True, text=True, encoding="utf-8", check=True).stdout
 
 
 def used():
