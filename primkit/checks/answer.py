@@ -263,7 +263,8 @@ class Check:
         slips = find_slips(self.reference, wrong, right, alike, LIKENESS_SECONDS)
         if not slips or slips[0].mends < len(wrong):
             return []
-        return [f"That is what a plain way gives with one slip in it: {', or '.join(WORDS[s.kind] for s in slips)}."]
+        kinds = dict.fromkeys(WORDS[slip.kind] for slip in slips)
+        return [f"That is what a plain way gives with one slip in it: {', or '.join(kinds)}."]
 
     def _agree(self, got: Any, other: Any, args: Args) -> bool:
         """Tell whether two results are the same; not where the judge meets something that it does not know."""
