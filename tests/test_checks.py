@@ -241,6 +241,10 @@ def test_the_arguments_that_went_wrong_can_be_tried_again():
     answer = pk.checks.weighted_accuracy(lambda *_arguments: 2.0)
     assert pk.checks.weighted_accuracy.reference(*answer.args) == 1.0
     assert "a Polygon" not in pk.checks.weighted_accuracy(circles).says
+    hidden = pk.checks.fit_line(lambda *_arguments: (0.0, 0.0))
+    assert repr(hidden).endswith("\nTry it again: the arguments are _.args.")
+    assert "<br>Try it again: the arguments are _.args." in hidden._repr_html_()
+    assert "_.args" not in repr(pk.checks.meet(lambda *_arguments: 1.0))
 
 
 def test_a_number_as_text_is_html_with_sign_and_word():

@@ -83,14 +83,20 @@ class Answer:
         """Whether the function is right."""
         return self.verdict == "right"
 
+    @property
+    def _ends(self) -> str:
+        """Where the arguments are, when what is said does not show all of them; ``_`` is a notebook's last answer."""
+        short = self.args and any(sign in self.says for sign in ("=array of shape", "...", " at ("))
+        return "\nTry it again: the arguments are _.args." if short else ""
+
     def __repr__(self) -> str:
-        return f"{VERDICT_SIGNS[self.verdict]} {self.verdict}: {self.says}"
+        return f"{VERDICT_SIGNS[self.verdict]} {self.verdict}: {self.says}{self._ends}"
 
     def __str__(self) -> str:
         return f"{self.verdict}: {self.says}"  # without the sign, which many a Windows console cannot print
 
     def _repr_html_(self) -> str:
-        color, words = VERDICT_COLORS[self.verdict], escape(self.says).replace("\n", "<br>")
+        color, words = VERDICT_COLORS[self.verdict], escape(self.says + self._ends).replace("\n", "<br>")
         return (
             f'<div style="border-left:4px solid {color};padding:4px 10px;line-height:1.5">'
             f'<b style="color:{color}">{VERDICT_SIGNS[self.verdict]} {self.verdict}</b>: {words}</div>'
@@ -263,7 +269,8 @@ class Check:
         slips = find_slips(self.reference, wrong, right, alike, LIKENESS_SECONDS)
         if not slips or slips[0].mends < len(wrong):
             return []
-        return [f"That is what a plain way gives with one slip in it: {', or '.join(WORDS[s.kind] for s in slips)}."]
+        kinds = dict.fromkeys(WORDS[slip.kind] for slip in slips)
+        return [f"That is what a plain way gives with one slip in it: {', or '.join(kinds)}."]
 
     def _agree(self, got: Any, other: Any, args: Args) -> bool:
         """Tell whether two results are the same; not where the judge meets something that it does not know."""

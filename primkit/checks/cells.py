@@ -69,7 +69,6 @@ to_cells = Check(
     (
         Fault("Below zero the cells are one too high: int() cuts towards zero, floor goes down.", like=_by(np.trunc)),
         Fault("That is the nearest border, not the cell that the point lies in.", like=_by(np.round)),
-        Fault("Everything is one too high: cell 0 begins at 0.", like=_by(lambda place: np.floor(place) + 1)),
         Fault(
             "Only points exactly on a border are wrong: a cell holds its lower border, and not its upper one.",
             like=_by(lambda place: np.ceil(place) - 1),
@@ -196,14 +195,6 @@ occupy = Check(
         Fault(
             "x and y have changed places: x goes with the cosine.",
             like=_scan_with(lambda pose, angles, ranges: around(pose[:2], ranges, np.pi / 2 - pose[2] - angles)),
-        ),
-        Fault(
-            "The heading is turned round: bearings count from it, so the two are added.",
-            like=_scan_with(lambda pose, angles, ranges: around(pose[:2], ranges, angles - pose[2])),
-        ),
-        Fault(
-            "The bearings are turned round: they count from the heading, so the two are added.",
-            like=_scan_with(lambda pose, angles, ranges: around(pose[:2], ranges, pose[2] - angles)),
         ),
         Fault(
             "Angles are turned into degrees: sine and cosine take radians, and these are radians already.",

@@ -168,10 +168,6 @@ drive_step = Check(
             name="time left out",
         ),
         Fault(
-            "The place is right, the heading is in degrees: radians are asked for.",
-            like=lambda *args: pose_after(*args) * [1.0, 1.0, 180 / np.pi],
-        ),
-        Fault(
             "That is a place: a pose has a heading as well.",
             when=lambda cases: all("of shape (2,)" in (case.off or "") for case in cases),
             name="no heading",

@@ -190,10 +190,6 @@ line_through = Check(
             "The offset has a sign: it belongs to the normal that you return.", like=_through(lambda a, d: (a, abs(d)))
         ),
         Fault(
-            "The line lies on the other side of the origin: is the sign of n . p right?",
-            like=_through(lambda a, d: (a, -d)),
-        ),
-        Fault(
             "Are x and y in the right places? np.arctan2 takes y first, then x.",
             like=_through(lambda a, d: (np.pi / 2 - a, d)),
         ),
@@ -202,7 +198,6 @@ line_through = Check(
             "The normal must have length 1: else the offset is no distance in metres.",
             like=lambda p, q: (found := through(p, q)) and (found[0], found[1] * float(np.hypot(*(q - p)))),
         ),
-        Fault("Angles are in radians, not in degrees.", like=_through(lambda a, d: (float(np.degrees(a)), d))),
     ),
 )
 
@@ -227,19 +222,12 @@ inliers_of = Check(
             like=lambda points, line, threshold: near(points, line, threshold - 2 * ROUNDING),
         ),
         Fault(
-            "Those are the points outside the band: is the comparison turned round?", like=lambda *args: ~near(*args)
-        ),
-        Fault(
             "Points far away on one side are inliers: a signed distance below zero is small, but not near.",
             like=_near_with(lambda p, a, d: p @ (np.cos(a), np.sin(a)) - d),
         ),
         Fault(
             "Is the offset subtracted? n . p alone is the distance from a line through the origin.",
             like=_near_with(lambda p, a, _d: np.abs(p @ (np.cos(a), np.sin(a)))),
-        ),
-        Fault(
-            "Are sine and cosine in the right places? n = (cos angle, sin angle).",
-            like=_near_with(lambda p, a, d: np.abs(p @ (np.sin(a), np.cos(a)) - d)),
         ),
     ),
 )

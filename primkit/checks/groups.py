@@ -226,8 +226,6 @@ assign_points = Check(
     _assign_cases,
     _labels,
     (
-        Fault("That is the farthest centre.", like=lambda p, c: np.argmax(_distances(p, c), axis=1)),
-        Fault("The centres are numbered from 0, as Python counts.", like=lambda p, c: nearest_centers(p, c) + 1),
         Fault(
             "That distance is |dx| + |dy|, the way along streets: Pythagoras is shorter.",
             like=lambda p, c: np.argmin(np.abs(p[:, None] - c).sum(axis=2), axis=1),
@@ -301,7 +299,6 @@ silhouette = Check(
         Fault("Points alone in their group count too, as 0: the mean goes over all points.", like=_lone_left_out),
         Fault("b is the mean distance to the nearest other group, not to all other points.", like=_all_others),
         Fault("The difference b - a is not yet divided by the larger of the two.", like=_with(lambda a, b: b - a)),
-        Fault("The sign is turned round: near 1 is clearly apart.", like=_with(lambda a, b: -_score(a, b))),
         Fault("Distances go to the points of a group here, not to its centre.", like=_to_centers),
         Fault(
             "That is one silhouette for each point: their mean is asked for.",

@@ -125,10 +125,6 @@ meet = Check(
                 _with(lambda line: (line[0] - np.pi / 2, line[1])),
             ),
         ),
-        Fault(
-            "That is the corner on the other side of the origin: by the sine of which difference is divided?",
-            like=_with(lambda line: line, -1.0),
-        ),
         Fault("Angles are in radians already.", like=_with(lambda line: (float(np.radians(line[0])), line[1]))),
     ),
 )
@@ -297,10 +293,6 @@ fair_choice = Check(
             like=_choose_by(
                 lambda squares, numbers, n_points, spread: squares / spread**2 + numbers * np.log10(n_points)
             ),
-        ),
-        Fault(
-            "The choice is right. The margin has the wrong sign: the rival costs more.",
-            like=lambda *args: (cheapest(*args)[0], -cheapest(*args)[1]),
         ),
         Fault(
             "The choice is right. The margin is measured to the worst candidate, not to the next best.",

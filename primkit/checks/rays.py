@@ -146,14 +146,6 @@ ray_segment = Check(
         _NONE,
         Fault("Two numbers came back: only t, the distance along the beam, is asked for.", when=_TWO),
         Fault("When is there no hit? Neither t nor s is looked at yet.", like=_segment(lambda t, _s: t)),
-        Fault(
-            "The sign of t is turned round: v x w and w x v have opposite signs.",
-            like=_segment(lambda t, s: _on_side(_ahead(-t), s)),
-        ),
-        Fault(
-            "The sign of s is turned round: v x w and w x v have opposite signs.",
-            like=_segment(lambda t, s: _on_side(_ahead(t), -s)),
-        ),
         Fault("Walls behind the robot are hit too: is t >= 0 asked for?", like=_segment(_on_side)),
         Fault("The wall is hit beyond its ends: is 0 <= s <= 1 asked for?", like=_segment(lambda t, _s: _ahead(t))),
         Fault(

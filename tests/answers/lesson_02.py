@@ -121,7 +121,7 @@ ANSWERS = {
         "wrong": {
             "cut": (lambda points, resolution: (points / resolution).astype(int), "int() cuts towards zero"),
             "rounded": (lambda points, resolution: np.rint(points / resolution), "nearest border"),
-            "one more": (lambda points, resolution: points // resolution + 1, "cell 0 begins at 0"),
+            "one more": (lambda points, resolution: points // resolution + 1, "off by one"),
             "upper border": (lambda points, resolution: np.ceil(points / resolution) - 1, "lower border"),
             "places": (lambda points, resolution: points / resolution, "which whole number"),
             "corner": (lambda points, resolution: points // resolution * resolution, "corner in metres"),
@@ -156,10 +156,10 @@ ANSWERS = {
             ),
             "no heading": (with_pose(lambda x, y, heading: (x, y, 0.0)), "angles count from its heading"),
             "no position": (with_pose(lambda x, y, heading: (0.0, 0.0, heading)), "add where it stands"),
-            "other heading": (with_pose(lambda x, y, heading: (x, y, -heading)), "The heading is turned round"),
+            "other heading": (with_pose(lambda x, y, heading: (x, y, -heading)), "a sign"),
             "other bearing": (
                 lambda cells, pose, angles, *rest: occupy_by_turning(cells, pose, -angles, *rest),
-                "The bearings are turned round",
+                "a sign",
             ),
             "degrees": (
                 lambda cells, pose, angles, *rest: occupy_by_turning(

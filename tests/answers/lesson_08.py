@@ -163,7 +163,7 @@ ANSWERS = {
             "heading kept": (heading_kept, "add the turn"),
             "a second": (lambda pose, left, right, seconds: by_chord(pose, left, right, 1.0), "multiply by the time"),
             "a tenth": (lambda pose, left, right, seconds: by_chord(pose, left, right, 0.1), "multiply by the time"),
-            "degrees": (in_degrees, "radians are asked for"),
+            "degrees": (in_degrees, "degrees and radians"),
             "two thousand pieces": (in_pieces(2000), "never gets exact"),
             "midpoint pieces": (in_pieces(20, 0.5), "never gets exact"),
             "a place": (lambda pose, left, right, seconds: pose[:2], "has a heading as well"),

@@ -44,6 +44,15 @@ EQUIVALENT = {
     "nut_or_coin, comparison 2": "no ratio is exactly 1.7",
     "compass_bias, off by one 1": "the range ends half a step further on, and holds the same angles or one more",
     "overlap_score, order 1": "intersection and union have no order",
+    "meet, comparison 1": "no sine is exactly 1e-9",
+    "match_shapes, comparison 1": "of two lists of one length either may be permuted",
+    "sonar_reading, order 1": "the absolute value is taken",
+    "sonar_reading, sign 2": "half a turn forwards is half a turn back",
+    "k_medians, order 1": "the absolute value is taken",
+    "wall_in_fog, comparison 1": "no hit lies at exactly the threshold",
+    "pipe_center, off by one 1": "99 steps end where 100 end",
+    "hexagon_corners, comparison 1": "the place inside lies on no side",
+    "overlap_score, order 4": "intersection and union have no order",
 }
 
 
