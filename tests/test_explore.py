@@ -188,6 +188,17 @@ def test_a_thing_of_no_kind_is_gone_around_like_any_other():
     assert len(open_outlines([(ellipse, other.points)])) == 0
 
 
+def test_one_s_own_steps_are_the_robot_s_eyes():
+    """Whoever sees one thing in all there is sees one; a right step of one's own sees what the library sees."""
+    world = pk.random_world(2, kinds=["circle", "circle"], rng=3)
+    one = pk.explore(world, steps=pk.Steps(segment=lambda points, _: np.zeros(len(points), dtype=int)), rng=0)
+    own = pk.explore(world, steps=pk.Steps(segment=lambda points, _: pk.link(points), fit_circle=pk.fit_circle), rng=0)
+    assert len(one.found) + len(one.found.others) <= 1
+    assert pk.evaluate(own.found, world).weighted_accuracy == 1.0
+    with pytest.raises(ValueError, match="steps must be Steps"):
+        pk.explore(world, steps=3)
+
+
 def test_out_of_scans(tours):
     world, whole = tours[0]
     tour = pk.explore(world, rng=0, most_scans=5)

@@ -44,7 +44,7 @@ def unmended(steps: Steps | None) -> Settings:
     >>> unmended(None), unmended(Steps(segment=lambda points, n_shapes: points[:, 0] > 0))
     (ROBUST, Settings(second_opinion=False))
     """
-    return replace(ROBUST, second_opinion=steps is None or steps.segment is None)
+    return replace(ROBUST, second_opinion=getattr(steps, "segment", None) is None)
 
 
 class Mapper:

@@ -10,6 +10,7 @@ const PAD = [["forward", "▲"], ["left", "◀"], ["back", "▼"], ["right", "�
 const PERIOD = 100; // ms: a step takes a tenth of a second
 const SOON = 90; // ms: timers are not exact
 const LATE = 5000; // ms: an answer that has not come by then will not come; the kernel may have been restarted
+const SILENT = "Python does not answer. Is another cell running? After a restart of the kernel, run this cell again.";
 const AWAY = "Click here, then drive with W A S D or the arrow keys, two at once.";
 const HERE = "You drive: W A S D or the arrow keys. Escape or a click elsewhere stops.";
 const WRITES = "input, textarea, select, [contenteditable=true]"; // who is writing is not disturbed

@@ -96,7 +96,14 @@ function render({ model, el }) {
   const parts = build(el);
   const known = { cells: new Map(), way: [], shapes: [] };
   const picture = new Picture(parts.canvas, parts.root);
-  const ask = (message) => model.send(message);
+  let silent;
+  const ask = (message) => {
+    silent ??= setTimeout(() => {
+      known.trouble = SILENT;
+      soon();
+    }, LATE);
+    model.send(message);
+  };
   const clock = new Clock(ask);
   const forget = listen(parts, clock, ask);
   const toggled = { pause: () => known.paused, truth: () => known.truthful, unseen: () => Boolean(known.unseen?.all) };
@@ -124,6 +131,7 @@ function render({ model, el }) {
   const soon = () => (due ||= requestAnimationFrame(show));
 
   const hear = (message, buffers) => {
+    silent = clearTimeout(silent);
     clock.hear(message);
     learn(known, message, buffers);
     if (message.say) write(parts.says, message.say);
@@ -135,6 +143,7 @@ function render({ model, el }) {
   takeFocus(parts.root);
 
   return () => {
+    clearTimeout(silent);
     clock.stop();
     clock.end();
     model.off("msg:custom", hear);

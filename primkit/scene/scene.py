@@ -185,7 +185,7 @@ class Scene(anywidget.AnyWidget):
         """Fetch shapes, begin to look for them if it is time to; return what is new about them."""
         begun = time.monotonic()
         if held and self.state.finder.in_the_way and begun < self._look_from:
-            return {}
+            return {"trouble": self._trouble()}
         try:
             if self.state.map():
                 self._failed = ""
