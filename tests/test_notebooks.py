@@ -87,6 +87,11 @@ def in_sight(lesson):
     return [cell for cell in lesson["cells"] if not deeper(cell)]
 
 
+def without_folded(text):
+    """Return a text without what is folded in it as one step deeper."""
+    return re.sub(FOLDED, "", text, flags=re.MULTILINE | re.DOTALL)
+
+
 def outputs(cell, kind):
     return [output["data"][kind] for output in cell["outputs"] if kind in output.get("data", {})]
 
@@ -234,14 +239,15 @@ def unfolded(lesson):
             hidden = cell["metadata"].get("jupyter", {}).get("source_hidden", False)
             breaches += [] if hidden else [f"one step deeper, with its code in sight: {source(cell)}"]
         else:
-            rest = re.sub(FOLDED, "", source(cell), flags=re.MULTILINE | re.DOTALL)
-            rest = re.sub(r"\A\*Figure: .+?\*$", "", rest, flags=re.MULTILINE | re.DOTALL).strip()
+            rest = re.sub(
+                r"\A\*Figure: .+?\*$", "", without_folded(source(cell)), flags=re.MULTILINE | re.DOTALL
+            ).strip()
             breaches += [f"one step deeper, in sight: {rest}"] if rest else []
     return breaches
 
 
 def over_budget(lesson):
-    words = len("\n".join(text_cells({"cells": in_sight(lesson)})).split())
+    words = sum(len(without_folded(text).split()) for text in text_cells({"cells": in_sight(lesson)}))
     _, (least, most) = WALKS.get(lesson["name"], ((), WORDS))
     breaches = [] if least <= words <= most else [f"{words} words"]
     breaches += [] if CELLS[0] <= len(in_sight(lesson)) <= CELLS[1] else [f"{len(in_sight(lesson))} cells"]
