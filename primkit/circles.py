@@ -207,7 +207,7 @@ def _polished(x: Floats, y: Floats, w: Floats, params: Floats) -> Floats:
     """Minimise the squared distances to the circle, from a good start on, shape (3,)."""
     for _ in range(GAUSS_NEWTON_STEPS):
         nearer = _nearer(x, y, w, params)
-        if nearer is None or nearer[2] > FLAT:
+        if nearer is None or not 0 < nearer[2] <= FLAT:
             break
         settled, params = np.abs(nearer - params).max() < 1e-12, nearer
         if settled:

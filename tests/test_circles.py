@@ -124,6 +124,12 @@ def test_whatever_the_points_it_is_a_circle_or_none(method, seed, n, flatness):
     assert circle is None or (isinstance(circle, Circle) and circle.radius > 0)
 
 
+@pytest.mark.parametrize("seed", [205, 226, 318])
+def test_a_step_never_leads_to_a_radius_below_zero(seed):
+    """An arc less high than its noise: Gauss and Newton pass through a line, and come out on its other side."""
+    assert fit_circle(arc(30, noise=0.05, rng=seed)).radius > 0
+
+
 FIT_FAILURES = {
     "unknown method": ({"method": "hyper"}, "method must be geometric, taubin, pratt or kasa, got 'hyper'"),
     "no method": ({"method": None}, "method must be geometric, taubin, pratt or kasa, got None"),

@@ -25,6 +25,8 @@ CELLS, WORDS = (25, 40), (1200, 2000)
 CELL_WORDS, CELL_LINES, SETUP_LINES = 250, 20, 5
 FILE_SIZE = 1_000_000  # bytes
 LEAST_TOLD = 20  # letters of the words for who cannot see a picture
+DEEPER = "one-step-deeper"  # the tag of a cell that is folded, so that it does not count to the budget
+FOLDED = r"^<details><summary>One step deeper: .+?</summary>\n\n.*?^</details>$"
 
 # A lesson's parts in their order: what to look for, in the text or in the code.
 PARTS = {
@@ -74,6 +76,20 @@ def section(lesson, heading):
     """Return the text below a heading of level two."""
     found = re.search(rf"^## {heading}\b.*?\n(.*?)(?=^## |\Z)", text(lesson), re.MULTILINE | re.DOTALL)
     return found[1] if found else ""
+
+
+def deeper(cell):
+    return DEEPER in cell["metadata"].get("tags", [])
+
+
+def in_sight(lesson):
+    """Return the cells that count to the budget: those that are not folded."""
+    return [cell for cell in lesson["cells"] if not deeper(cell)]
+
+
+def without_folded(text):
+    """Return a text without what is folded in it as one step deeper."""
+    return re.sub(FOLDED, "", text, flags=re.MULTILINE | re.DOTALL)
 
 
 def outputs(cell, kind):
@@ -215,11 +231,26 @@ def poor_end(lesson):
     return breaches
 
 
+def unfolded(lesson):
+    """What is one step deeper is not in sight until it is asked for: only its picture, and what tells of it."""
+    breaches = []
+    for cell in filter(deeper, lesson["cells"]):
+        if cell["cell_type"] == "code":
+            hidden = cell["metadata"].get("jupyter", {}).get("source_hidden", False)
+            breaches += [] if hidden else [f"one step deeper, with its code in sight: {source(cell)}"]
+        else:
+            rest = re.sub(
+                r"\A\*Figure: .+?\*$", "", without_folded(source(cell)), flags=re.MULTILINE | re.DOTALL
+            ).strip()
+            breaches += [f"one step deeper, in sight: {rest}"] if rest else []
+    return breaches
+
+
 def over_budget(lesson):
-    words = len("\n".join(text_cells(lesson)).split())
+    words = sum(len(without_folded(text).split()) for text in text_cells({"cells": in_sight(lesson)}))
     _, (least, most) = WALKS.get(lesson["name"], ((), WORDS))
     breaches = [] if least <= words <= most else [f"{words} words"]
-    breaches += [] if CELLS[0] <= len(lesson["cells"]) <= CELLS[1] else [f"{len(lesson['cells'])} cells"]
+    breaches += [] if CELLS[0] <= len(in_sight(lesson)) <= CELLS[1] else [f"{len(in_sight(lesson))} cells"]
     return breaches + ([] if lesson["size"] <= FILE_SIZE else [f"{lesson['size']} bytes"])
 
 
@@ -232,7 +263,7 @@ def leftovers(lesson):
 RULES = (
     *(not_run_in_order, failed_or_silent, shell, long_cells, setup, headings),
     *(pictures_without_words, unseen_by_the_blind),
-    *(missing_parts, slider_without_twin, stubs, poor_quiz, poor_end, over_budget, leftovers),
+    *(missing_parts, slider_without_twin, stubs, poor_quiz, poor_end, unfolded, over_budget, leftovers),
 )
 
 
@@ -348,6 +379,21 @@ def too_large(lesson):
     lesson["size"] = FILE_SIZE + 1
 
 
+def tagged(found):
+    """Break a lesson by calling a cell one step deeper that everybody sees."""
+
+    def breaks(lesson):
+        first(lesson, found)["metadata"]["tags"] = [DEEPER]
+
+    return breaks
+
+
+def in_sight_beside_it(lesson):
+    folded = "<details><summary>One step deeper: more</summary>\n\nThis is folded.\n\n</details>"
+    cell = first(lesson, "^## Recap")
+    cell.update(metadata={"tags": [DEEPER]}, source=f"{folded}\n\nThis is not.")
+
+
 def times(lesson):
     code_cells(lesson)[0]["metadata"]["execution"] = {"iopub.status.busy": "2020-01-01T00:00:00Z"}
 
@@ -389,6 +435,9 @@ BROKEN = {
     "no table": (poor_end, replaced(r"^\|[-| ]+\|$", "")),
     "one level": (poor_end, replaced(r"\*\*Level 2", "Then")),
     "nothing to read": (poor_end, replaced(r"^## Further reading[\s\S]*", "## Further reading\n\n* One book.")),
+    "code in sight that should be folded": (unfolded, tagged("^import primkit")),
+    "a text in sight that should be folded": (unfolded, tagged("^## Recap")),
+    "a text beside what is folded": (unfolded, in_sight_beside_it),
     "too few words": (over_budget, lambda lesson: [c.update(source="#") for c in lesson["cells"]]),
     "too many words": (over_budget, added("^## Recap", " word" * WORDS[1])),
     "too few cells": (over_budget, too_few_cells),

@@ -1,6 +1,6 @@
 """Evidence: what speaks for a shape, and what against it.
 
-A pentagon always lies closer to the points than a circle or a square can: it has more numbers to adjust. So a shape is
+A pentagon can follow noise further than a circle or a square: it has more numbers to adjust. So a shape is
 charged for every number that had to be fitted, for the length over which it spreads its points, and for what was not
 seen of it. What remains is the evidence, and it decides.
 
