@@ -66,7 +66,6 @@ c.Autograde.autograde_preprocessors = [
 ]
 c.CarefulExecute.course = course
 c.CarefulExecute.timeout = 60  # seconds for each cell
-c.CarefulExecute.tests_timeout = 180  # seconds for each hidden test; its parts have limits of their own
 c.CarefulExecute.megabytes = 4096  # of memory for each submission
 '''
 IGNORED = """\
