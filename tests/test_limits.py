@@ -25,7 +25,6 @@ from primkit.__main__ import main
 from primkit.arguments import LikelyWrong, as_points, as_positive, as_rng, short
 from primkit.circles import fit_circle
 from primkit.commands.words import exit_code
-from primkit.course.grading import OutOfTime, TimeLimit
 from primkit.formats import Route, files
 from primkit.lidar import Scans, as_ranges
 from primkit.lines import LINE, find_lines
@@ -436,18 +435,6 @@ def test_r13_what_could_not_be_written_stays_out_and_the_file_is_named(tmp_path)
 
 
 # --- R16: Windows, by shims ---------------------------------------------------------------------------------------
-
-
-def test_r16_a_thread_that_stops_a_loop_says_so(monkeypatch):
-    monkeypatch.delattr("signal.setitimer", raising=False)
-
-    def endless():
-        with TimeLimit(0.05):
-            while True:
-                pass
-
-    with pytest.raises(OutOfTime, match=r"^stopped after 0\.05 s$"):
-        endless()
 
 
 def test_r16_what_is_printed_can_be_printed_by_a_windows_console():

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 import warnings
-from contextlib import chdir, redirect_stderr, redirect_stdout, suppress
+from contextlib import chdir, redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import nbformat
@@ -220,7 +220,7 @@ def test_nbgrader_s_own_command_grades_with_our_limits(graded):
     """The course folder is nbgrader's: whoever grades from formgrader gets the careful way as well."""
     course, _, _, _ = graded
     notebook = read(course / "autograded" / "mixed" / PS / f"{PS}.ipynb")
-    assert notebook["metadata"]["primkit"] == {"faults": []}
+    assert notebook["metadata"]["primkit"]["faults"] == []
     marks = [
         output["data"][MIME]
         for cell in notebook["cells"]
@@ -236,7 +236,7 @@ TROUBLE = {
     "first": "import time\nimport numpy as np\nx = 1\nopen('made.txt', 'w').close()",
     "loop": "y = 2\nwhile True:\n    time.sleep(0.01)",
     "after": "x += 1\nprint(x, y)",
-    "deletes": "import os, shutil\nshutil.rmtree(os.getcwd())",
+    "deletes": "import os, shutil\nshutil.rmtree(os.getcwd(), ignore_errors=True)",
     "reads": "print(open('given.txt').read())",
     "deaf": "while True:\n    try:\n        while True:\n            time.sleep(0.01)\n    except:\n        pass",
     "dies": "import os\nos._exit(3)",
@@ -306,22 +306,6 @@ def run(folder, sources, **settings):
     return [cell.outputs for cell in notebook.cells], noted
 
 
-def test_a_missing_function_is_told_by_the_error_of_its_cell(tmp_path):
-    mark = (
-        "from primkit.checks import Check, judges\nfrom primkit.course.grading import Part, Task\n"
-        "CHECK = Check('length', abs, lambda rng: [(1.0,)], judges.number('m'))\n"
-        "Task('length', [Part('plain', 2, CHECK)]).mark('length', globals())"
-    )
-    cells = ["def length(v):\n    return (v", "x = 1\ninput()\ndef area(v): pass", mark]
-    cells.append("from primkit.course.grading.failed_cells import failure\nprint(failure('area')[1])")
-    outputs, _ = run(tmp_path / "x", cells)
-    shown = next(output.data[MIME] for output in outputs[2] if MIME in output.get("data", {}))
-    told = "there is no function length: its cell stops with SyntaxError in line 2: "
-    assert {part["fault"] for part in shown["parts"]} == {"its cell stops with SyntaxError"}
-    assert all(part["off"].startswith(told) for part in shown["parts"])
-    assert outputs[3][0].text.startswith("StdinNotImplementedError in line 2: ")
-
-
 def test_a_cell_that_ends_the_kernel_only_when_it_runs_again(tmp_path):
     once = (
         "import os\nfrom pathlib import Path\nseen = Path.home() / 'seen'\nseen.exists() and os._exit(1)\nseen.touch()"
@@ -332,7 +316,7 @@ def test_a_cell_that_ends_the_kernel_only_when_it_runs_again(tmp_path):
 
 
 def test_memory_is_watched_where_the_system_does_not_refuse_it(tmp_path, monkeypatch):
-    monkeypatch.setattr("primkit.course.executing.PREPARE", "pass  # {0}")
+    monkeypatch.setattr("primkit.course.own_kernel.PREPARE", "pass  # {limits}")
     hog = "import time\nhog = b'1' * (400 * 2**20)\ntime.sleep(20)"
     outputs, noted = run(tmp_path / "x", [hog, "print('on')"], megabytes=300)
     assert noted == [("cell 1", "MemoryError")]
@@ -348,23 +332,21 @@ def test_memory_that_a_stopped_cell_holds_is_given_back(tmp_path):
     assert outputs[2][0].text == "1 1258291200\n"
 
 
-def gone(pid):
-    """Tell whether a process ends soon; one that has ended may still be in the list, until its parent asks for it."""
-    with suppress(psutil.NoSuchProcess):
-        for _ in range(10 * PATIENCE):
-            if psutil.Process(pid).status() == psutil.STATUS_ZOMBIE:
-                break
-            time.sleep(0.1)
-        else:
-            return False
-    return True
+def gone(words):
+    """Tell whether a process ends soon; its number in the submission's own world says nothing here."""
+    for _ in range(10 * PATIENCE):
+        lines = [process.info["cmdline"] or () for process in psutil.process_iter(["cmdline"])]
+        if not any(words in word for line in lines for word in line):
+            return True
+        time.sleep(0.1)
+    return False
 
 
 @pytest.mark.skipif(os.name != "posix", reason="processes have no groups on Windows")
 def test_what_a_cell_has_started_ends_with_it(tmp_path):
-    start = "import subprocess, sys\nprint(subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(99)']).pid)"
+    start = "import subprocess, sys\nsubprocess.Popen([sys.executable, '-c', 'import time; time.sleep(98.75)'])"
     outputs, _ = run(tmp_path / "x", [start, "import os\nos._exit(1)", "print('on')"])
-    assert gone(int(outputs[0][0].text))
+    assert gone("time.sleep(98.75)")
     assert outputs[2][0].text == "on\n"
 
 
@@ -373,26 +355,6 @@ def test_what_a_cell_prints_is_cut(tmp_path):
     assert sum(len(output.text) for output in outputs[0]) < 500_000
     assert outputs[1][0].text == "on\n"
     assert noted == []
-
-
-def test_a_hidden_test_without_its_number_has_no_points(tmp_path):
-    from primkit.course.executing import CarefulExecute
-
-    def cell(source):
-        flags = {"grade": True, "grade_id": "half-hidden", "points": 2}
-        return nbformat.v4.new_code_cell(source, metadata={"nbgrader": flags})
-
-    cells = [cell(f"x.mark('half', globals())  # {n}") for n in range(4)]
-    shown = ["1.5", "7.0", "'all of it'", None]
-    for each, text in zip(cells, shown, strict=True):
-        if text is not None:
-            each.outputs = [nbformat.v4.new_output("execute_result", data={"text/plain": text}, execution_count=1)]
-    notebook = nbformat.v4.new_notebook(cells=cells)
-    execute = CarefulExecute(course=str(tmp_path))
-    execute.faults = []
-    execute._fail_without_points(notebook)
-    failed = [any(output.output_type == "error" for output in each.outputs) for each in notebook.cells]
-    assert failed == [False, True, True, True]
 
 
 # --- a course, and what it lacks ----------------------------------------------------------------------------

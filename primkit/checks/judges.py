@@ -35,7 +35,8 @@ def number(unit: str = "", tolerance: float = CLOSE) -> Judge:
             return f"got {shown(got)}, expected a number such as {shown(expected)}{behind}{no_return(got)}"
         if _close(value, np.asarray(expected, dtype=float), tolerance):
             return None
-        return f"got {shown(float(value))}{behind}, expected {shown(expected)}{behind}"
+        mine, theirs = told_apart(float(value), expected)
+        return f"got {mine}{behind}, expected {theirs}{behind}"
 
     return judge
 
@@ -58,7 +59,8 @@ def array(unit: str = "", tolerance: float = CLOSE) -> Judge:
             np.argmax(np.where(values == wanted, 0.0, np.nan_to_num(error, nan=np.inf))), values.shape
         )
         place = f" at {list(map(int, worst))}" if worst else ""
-        return f"got {shown(float(values[worst]))}{behind}{place}, expected {shown(float(wanted[worst]))}{behind}"
+        mine, theirs = told_apart(float(values[worst]), float(wanted[worst]))
+        return f"got {mine}{behind}{place}, expected {theirs}{behind}"
 
     return judge
 
@@ -102,7 +104,9 @@ def points_in_any_order(unit: str = "m", tolerance: float = 1e-6) -> Judge:
         worst = int(np.argmax(apart[mine, theirs]))
         if apart[mine[worst], theirs[worst]] <= tolerance:
             return None
-        return f"got {shown(points[mine[worst]])} {unit}, expected {shown(wanted[theirs[worst]])} {unit}"
+        pair = shown(points[mine[worst]]), shown(wanted[theirs[worst]])
+        far = f", {shown(float(apart[mine[worst], theirs[worst]]))} {unit} away" * (pair[0] == pair[1])
+        return f"got {pair[0]} {unit}, expected {pair[1]} {unit}{far}"
 
     return judge
 
@@ -209,6 +213,20 @@ def shown(value: Any) -> str:
     else:
         text = repr(value) if isinstance(value, (str, Circle)) else f"a {type(value).__name__}"
     return text if len(text) <= 90 else text[:87] + "..."
+
+
+def told_apart(got: float, expected: float) -> tuple[str, str]:
+    """Return two numbers with four digits, or with as many as it takes to see that they differ.
+
+    >>> told_apart(0.5, 0.25), told_apart(0.27080, 0.27084)
+    (('0.5', '0.25'), ('0.2708', '0.27084'))
+    """
+    pair = shown(got), shown(expected)
+    for digits in range(5, 18):
+        if pair[0] != pair[1]:
+            break
+        pair = f"{got:.{digits}g}", f"{expected:.{digits}g}"
+    return pair
 
 
 def _floats(value: Any) -> NDArray[np.float64] | None:

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 
+from .confining import UNPROTECTED, confined_by
 from .course import CONFIG, COPIED_FOLDERS, SETTINGS, STUDENTS, Course
 from .handed_in import strangers
 from .moved import old_names
@@ -46,7 +47,7 @@ class Finding:
 
 def check(course: Course, environment: Path = ENVIRONMENT) -> list[Finding]:
     """Look at everything that a course needs."""
-    installed = *_python(), *_packages(environment), *_commands(), *_kernel()
+    installed = *_python(), *_packages(environment), *_commands(), *_kernel(), _walls()
     moved = (Finding(old.file, f"names {old.name}, which has moved", old.mend) for old in old_names(course))
     looked_at = *_folder(course), *_sources(course), *moved, *_points(course), *_settings(course), *_secrets(course)
     return [*installed, *looked_at, *_gradebook(course)]
@@ -102,6 +103,16 @@ def _kernel() -> Iterator[Finding]:
     program = Path(words[0])
     own = not program.is_absolute() or program.parent == Path(sys.executable).parent
     yield Finding("kernel python3", words[0] if own else f"{program} is another Python than this one", mend, own)
+
+
+def _walls() -> Finding:
+    """Look what stands between a student's code and the teacher's files while it runs."""
+    words = (
+        "Debian and Ubuntu: sudo apt install bubblewrap; what else helps stands in the pack's page untrusted_code.md"
+    )
+    walls = confined_by()
+    found = f"behind the walls of {walls}" if walls else UNPROTECTED
+    return Finding("submissions run", found, words, bool(walls) or not sys.platform.startswith("linux"))
 
 
 def _folder(course: Course) -> Iterator[Finding]:

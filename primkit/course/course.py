@@ -68,7 +68,6 @@ c.AssignLatePenalties.plugin_class = "primkit.course.late.LateRule"  # its setti
 c.GenerateFeedback.preprocessors = {FEEDBACK_STEPS}
 c.CarefulExecute.course = course
 c.CarefulExecute.timeout = 60  # seconds for each cell
-c.CarefulExecute.tests_timeout = 180  # seconds for each hidden test; its parts have limits of their own
 c.CarefulExecute.megabytes = 4096  # of memory for each submission
 '''
 SETTINGS = "course.toml"

@@ -1,13 +1,14 @@
-"""Executing: run a submission so that whatever it does costs its own cells alone.
+"""Executing: run a submission so that whatever it does costs its own cells alone, and mark it from outside.
 
-nbgrader's own preprocessor runs a notebook until its kernel dies, and then the whole submission is lost. This one,
-which the course's ``nbgrader_config.py`` puts in its place, goes on:
+nbgrader's own preprocessor runs a notebook, hidden tests and all, in one kernel. This one, which the course's
+``nbgrader_config.py`` puts in its place, runs only what is the student's there, in a kernel of its own
+(``own_kernel.py``). The graded cells are run by the judge, in this process, as the teacher wrote them, with the
+student's functions called from afar (``grading/judging.py``). And it goes on:
 
-* It runs in a scratch copy of the submission's folder. What is deleted or changed there is put back for the next cell.
+* The kernel works in a scratch copy of the submission's folder. What is deleted or changed there is put back for the
+  next cell.
 * A cell that takes too long is interrupted. A kernel that ends, or cannot be interrupted, is started again: the guilty
   cell gets an error that says so, the cells before it run again without it, and then those after it.
-* The kernel has a memory limit, no variables of the teacher's environment, and a home folder of its own.
-* A hidden test that returns no number has been tampered with, and counts as failed.
 
 In:  a notebook, and the folder it lies in.
 Out: the notebook with its outputs; ``metadata.primkit.faults`` lists what happened, for the report.
@@ -19,61 +20,43 @@ import filecmp
 import os
 import re
 import shutil
-import signal
-import site
 import tempfile
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import chdir, contextmanager, suppress
 from pathlib import Path
+from queue import Empty
 from typing import Any
 
-import psutil
 from nbclient.exceptions import CellTimeoutError, DeadKernelError
-from nbclient.util import ensure_async
+from nbclient.util import run_sync
 from nbformat.v4 import new_output
-from nbgrader.preprocessors import Execute
-from traitlets import Integer, Unicode
+from traitlets import Integer
 
-from ..formats import save_scans, save_world
+from ..formats import save_scans
+from ..world import World
+from .confining import UNPROTECTED, confined_by
 from .course import SCANS, Course
-from .grading.own_board import TRUTH_VARIABLE
+from .grading.judging import Judging
+from .grading.own_board import board_of
+from .grading.task import Missing, missing
+from .grading.workers import Workers
+from .own_kernel import OwnKernel
 from .personal import personal_scans, personal_world
 
-# What a kernel needs of the teacher's environment; nothing else is handed on, for there may be passwords in it.
-KEPT_VARIABLES = (
-    *("PATH", "LANG", "LC_ALL", "LC_CTYPE", "TZ", "VIRTUAL_ENV", "LD_LIBRARY_PATH"),
-    *("SYSTEMROOT", "SYSTEMDRIVE", "WINDIR", "COMSPEC", "PATHEXT", "NUMBER_OF_PROCESSORS", "PROCESSOR_ARCHITECTURE"),
-)
-# Memory is limited; and exit() is an error, as in a script, where IPython's would end the kernel some cells later.
-PREPARE = """\
-def _prepare():
-    import builtins, sys
-    for names in (vars(builtins), get_ipython().user_ns):
-        names.update(exit=sys.exit, quit=sys.exit)
-    try:
-        import resource
-        resource.setrlimit(resource.RLIMIT_AS, ({0}, {0}))
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    except (ImportError, ValueError, OSError):
-        pass
-    from primkit.course.grading.failed_cells import watch
-    watch()
-_prepare()
-del _prepare
-"""
-MEGABYTE = 2**20
+FORKS = hasattr(os, "fork")  # not on Windows: there the kernel itself answers the judge, in the end
+LEAVE = "__import__('primkit.course.grading.serving', fromlist=['serving']).{0}({1!r}, {2}, globals())"
+SERVED_SECONDS = 2.0  # until a kernel that answered the judge is ready for a cell again
 ALWAYS_NOTED = ("MemoryError", "SystemExit")  # also where a test meets them
 ERROR_LETTERS = 200  # letters of an error that are told
-CELL_LETTERS = 200_000  # of one cell's output that are kept
-MARK_CALL = re.compile(r"^[^#\n]*\.mark\(", re.MULTILINE)  # the last line of a hidden test
+CELL_LETTERS = 200_000  # of one cell's prints that are kept
+CELL_BYTES = 2**22  # of one cell's outputs, pictures and all
+LINE_NUMBER = re.compile(r"\bline (\d+)")
 
 
-class CarefulExecute(Execute):  # type: ignore[misc]
+class CarefulExecute(OwnKernel):
     """Run the cells of a submission; see this module."""
 
-    course = Unicode("", help="The course folder.").tag(config=True)
-    megabytes = Integer(4096, help="Memory limit of the kernel, in megabytes.").tag(config=True)
     timeout = Integer(60, help="Time limit of a cell, in seconds.", allow_none=True).tag(config=True)
-    tests_timeout = Integer(180, help="Time limit of hidden tests: their parts have limits too.").tag(config=True)
 
     # --- a notebook ---------------------------------------------------------------------------------------
 
@@ -81,43 +64,59 @@ class CarefulExecute(Execute):  # type: ignore[misc]
         """Run a notebook in a scratch copy of its folder."""
         self.faults: list[dict[str, Any]] = list(nb.metadata.get("primkit", {}).get("faults", ()))  # of its cells
         self.guilty: set[int] = set()
-        self.groups: list[int] = []  # of processes: each kernel's, with what it has started
-        folder = Path(resources["metadata"]["path"])
+        self.failed: dict[int, tuple[str, str]] = {}  # why a cell defines nothing: the error's name, and its words
+        folder, about = Path(resources["metadata"]["path"]), resources["nbgrader"]
+        source = Path(self.course, "source", about.get("assignment", ""), f"{about.get('notebook')}.ipynb")
+        self.judging = Judging(source, self._missing) if source.is_file() else None
+        self.twins = len(self.judging.graded) if self.judging else 0
+        if not confined_by():
+            self.faults.append({"cell": "-", "name": "unprotected", "says": UNPROTECTED})
         with tempfile.TemporaryDirectory(prefix="primkit-", ignore_cleanup_errors=True) as scratch:
-            self.scratch = Path(scratch)
-            self.given, self.work = self.scratch / "given", self.scratch / "work"
-            shutil.copytree(folder, self.given, copy_function=shutil.copyfile)  # not who may write
-            self._place_scans(resources["nbgrader"]["student"])
-            shutil.copytree(self.given, self.work, copy_function=shutil.copyfile)
+            self.prepare(Path(scratch), self.judging.without if self.judging else ())
+            self.given, self.work = Path(scratch, "given"), Path(scratch, "work")
+            shutil.copytree(folder, self.given, copy_function=_copy_file, symlinks=False, ignore=_links)
+            self.world = self._place_scans(about["student"])
+            shutil.copytree(self.given, self.work, copy_function=_copy_file, dirs_exist_ok=True)
+            self.workers = Workers(Path(scratch, "run"), self.spent, None if FORKS else self._serve)
             resources["metadata"]["path"] = str(self.work)
             try:
                 nb, resources = super().preprocess(nb, resources, km)
             finally:
                 resources["metadata"]["path"] = str(folder)
-                self._end_leftovers()
-        self._fail_without_points(nb)
-        nb.metadata["primkit"] = {"faults": self.faults}
+                self.workers.close()
+                self.end_leftovers()
+        nb.metadata["primkit"] = {"faults": self.faults, "confined": confined_by()}
         return nb, resources
 
-    def _place_scans(self, student: str) -> None:
-        """Give the student's own scans and truth to a problem set that has scans."""
-        if (self.given / SCANS).exists():
-            world = personal_world(student, salt=Course(self.course).salt())
-            (self.given / SCANS).unlink()
-            save_scans(personal_scans(world), self.given / SCANS)
-            save_world(world, self.scratch / "truth.geojson")
+    @contextmanager
+    def setup_kernel(self, **options: Any) -> Iterator[None]:
+        """Judge the graded cells once all others have run, while the kernel is there."""
+        with super().setup_kernel(**options):
+            yield
+            self._judge()
+            self.processes()  # what is still there is ended
 
-    def _fail_without_points(self, nb: Any) -> None:
-        """Fail hidden tests that show no number: nbgrader would give them all points."""
-        for index, cell in enumerate(nb.cells):
-            about = cell.metadata.get("nbgrader", {})
-            if cell.cell_type != "code" or not about.get("grade") or not MARK_CALL.search(cell.source):
-                continue
-            results = [output for output in cell.outputs if output.output_type == "execute_result"]
-            if any(output.output_type == "error" for output in cell.outputs):
-                continue
-            if len(results) != 1 or not _within(results[0].data.get("text/plain", ""), about["points"]):
-                self._blame(nb, index, "NoPoints", "the hidden tests did not return their points: were they changed?")
+    def _judge(self) -> None:
+        for index, cell in enumerate(self.nb.cells):
+            if self.judging and (name := self._graded(cell)):
+                cell.source = self.judging.graded[name]["source"]
+                with board_of(self.world), chdir(self.given):
+                    cell.outputs = self.judging.outputs(name, index, self.workers)
+                self._note_judged(index)
+
+    def _graded(self, cell: Any) -> str | None:
+        """Return the name of a cell that the judge runs."""
+        name = cell.metadata.get("nbgrader", {}).get("grade_id")
+        return name if cell.cell_type == "code" and self.judging and name in self.judging.graded else None
+
+    def _place_scans(self, student: str) -> World | None:
+        """Give the student's own scans to a problem set that has scans; return the board that they show."""
+        if not (self.given / SCANS).exists():
+            return None
+        world = personal_world(student, salt=Course(self.course).salt())
+        (self.given / SCANS).unlink()
+        save_scans(personal_scans(world), self.given / SCANS)
+        return world
 
     # --- a cell -------------------------------------------------------------------------------------------
 
@@ -125,31 +124,29 @@ class CarefulExecute(Execute):  # type: ignore[misc]
         """Run a cell; when it takes the kernel with it, start another one and catch up."""
         if cell.cell_type != "code" or not cell.source.strip():
             return cell, resources
+        if self._graded(cell):
+            cell.outputs, cell.execution_count = [], None
+            self._leave_twin(index)
+            return cell, resources
         problem = self._run(cell, resources, index)
         stopped, full = _failed_with("CellTimeoutError", cell), _failed_with("MemoryError", cell)
         if problem:
-            self._blame(self.nb, index, *problem)
+            self._blame(index, *problem)
         elif stopped:
-            says = f"took longer than {self._get_timeout(cell)} s and was interrupted"
-            self._note(self.nb, index, "CellTimeoutError", says)
+            self._note(index, "CellTimeoutError", f"took longer than {self.timeout} s and was interrupted")
         else:
             self._note_error(index)
         if problem or stopped or full:
             self.guilty.add(index)
         # The memory that a cell has taken would be missing to the others.
-        if problem or full or (stopped and self._memory() > self.megabytes / 2):
+        if problem or full or (stopped and self.memory() > self.megabytes / 2):
             self._catch_up(index, resources)
         self._restore_files(index)
         return cell, resources
 
-    def _get_timeout(self, cell: Any) -> Any:
-        """Return a cell's time limit; nbclient asks for it."""
-        hidden = cell is not None and cell.metadata.get("nbgrader", {}).get("grade") and MARK_CALL.search(cell.source)
-        return self.tests_timeout if hidden else super()._get_timeout(cell)
-
     def _run(self, cell: Any, resources: Any, index: int) -> tuple[str, str] | None:
         """Run a cell; return the name of what went wrong, and a sentence, when its kernel is lost."""
-        self.killed, self.letters = "", 0
+        self.killed, self.letters, self.size = "", 0, 0
         try:
             super().preprocess_cell(cell, resources, index)
         except DeadKernelError:
@@ -157,47 +154,96 @@ class CarefulExecute(Execute):  # type: ignore[misc]
                 return "MemoryError", self.killed
             return "KernelDied", "this cell ended Python; the other cells run without it"
         except (CellTimeoutError, RuntimeError, TimeoutError):
-            limit = self._get_timeout(cell)
-            return "CellTimeoutError", f"took longer than {limit} s, and could only be ended with its kernel"
+            return "CellTimeoutError", f"took longer than {self.timeout} s, and could only be ended with its kernel"
+        except Exception as error:  # of nbclient's, over messages that are none
+            return "KernelDied", f"this cell has changed how its kernel speaks ({type(error).__name__}): it was ended"
         return None
+
+    def _leave_twin(self, index: int) -> None:
+        """Let the kernel leave a twin of itself, as it is now, to be asked by the judge in the end."""
+        if FORKS:
+            with suppress(Exception):  # who has changed the kernel has no twin, and no points
+                self.run_silently(LEAVE.format("leave_twin", self.workers.address, index))
+
+    def _serve(self, index: int) -> None:
+        """Let the kernel itself answer the judge; another one, if it still is at the part before."""
+        if self.serving and not self._has_served():
+            self._catch_up(len(self.nb.cells), self.resources)
+        address = self.workers.address if isinstance(self.workers.address, str) else list(self.workers.address)
+        source = LEAVE.format("serve", address, index)
+        self.serving = self.kc.execute(source, silent=True, store_history=False)
+
+    serving = ""  # the message that asked the kernel to
+
+    def _has_served(self) -> bool:
+        with suppress(Empty):
+            while (
+                run_sync(self.kc.get_shell_msg)(timeout=SERVED_SECONDS)["parent_header"].get("msg_id") != self.serving
+            ):
+                pass
+            return True
+        return False
 
     def _catch_up(self, index: int, resources: Any) -> None:
         """Start another kernel, and run the cells up to here again, without those that are guilty."""
-        self._restart_kernel()
+        self.restart_kernel()
         for earlier in range(index):
             cell = self.nb.cells[earlier]
             if cell.cell_type != "code" or not cell.source.strip() or earlier in self.guilty:
+                continue
+            if self._graded(cell):
+                self._leave_twin(earlier)
                 continue
             problem = self._run(_copy_cell(cell), resources, earlier)
             self.nb.cells[earlier] = cell  # its outputs are those of the first time
             self._restore_files(earlier, told=True)
             if problem:  # this time it is guilty: once more, without it
-                self._blame(self.nb, earlier, *problem)
+                self._blame(earlier, *problem)
                 self.guilty.add(earlier)
                 return self._catch_up(index, resources)
         return None
 
-    def _blame(self, nb: Any, index: int, name: str, sentence: str) -> None:
+    # --- what happened ------------------------------------------------------------------------------------
+
+    def _blame(self, index: int, name: str, sentence: str) -> None:
         """Let a cell fail, with a sentence that says why."""
-        cell = nb.cells[index]
+        cell = self.nb.cells[index]
         traceback = [f"\x1b[0;31m{name}\x1b[0m: {sentence}"]
         cell.outputs = [
             *(output for output in cell.outputs if output.output_type != "execute_result"),
             new_output("error", ename=name, evalue=sentence, traceback=traceback),  # type: ignore[no-untyped-call]
         ]
-        self._note(nb, index, name, sentence)
+        self.failed[index] = name, f"{name}: {sentence}"
+        self._note(index, name, sentence)
 
     def _note_error(self, index: int) -> None:
-        """Note a cell of the student's own that fails; that a test fails says its score."""
-        cell = self.nb.cells[index]
-        for error in (output for output in cell.outputs if output.output_type == "error"):
-            if error.ename in ALWAYS_NOTED or not cell.metadata.get("nbgrader", {}).get("grade"):
-                self._note(self.nb, index, error.ename, " ".join(error.evalue.split())[:ERROR_LETTERS] or "fails")
+        """Note a cell of the student's own that fails."""
+        for error in (output for output in self.nb.cells[index].outputs if output.output_type == "error"):
+            words = " ".join(error.evalue.split())[:ERROR_LETTERS]
+            line = LINE_NUMBER.search(re.sub(r"\x1b\[[\d;]*m", "", "\n".join(error.traceback)))
+            where = f" in line {line[1]}" if line else ""
+            self.failed[index] = error.ename, f"{error.ename}{where}" + (f": {words}" if words else "")
+            self._note(index, error.ename, words or "fails")
 
-    def _note(self, nb: Any, index: int, name: str, sentence: str) -> None:
-        about = nb.cells[index].metadata.get("nbgrader", {})
+    def _note_judged(self, index: int) -> None:
+        """Note of a graded cell what a teacher should look at; that a test fails says its score."""
+        for output in self.nb.cells[index].outputs:
+            if output.output_type == "error" and output.ename in (*ALWAYS_NOTED, "KernelDied"):
+                self._note(index, output.ename, output.evalue[:ERROR_LETTERS] or "fails")
+        for trace in dict.fromkeys(self.workers.traces):
+            self._note(index, "OddAnswer", f"{trace}: read the code")
+        self.workers.traces.clear()
+
+    def _note(self, index: int, name: str, sentence: str) -> None:
+        about = self.nb.cells[index].metadata.get("nbgrader", {})
         cell = about.get("grade_id", f"cell {index + 1}")
         self.faults.append({"cell": cell, "name": name, "says": sentence})
+
+    def _missing(self, name: str) -> Missing:
+        """Return why the notebook has no such name: the last failed cell that defines it says it."""
+        defines = re.compile(rf"^[ \t]*(async +)?def +{re.escape(name)}\b", re.MULTILINE)
+        told = [self.failed[index] for index in sorted(self.failed) if defines.search(self.nb.cells[index].source)]
+        return missing(name, told[-1] if told else None)
 
     def _restore_files(self, index: int, *, told: bool = False) -> None:
         """Put back what a cell has deleted or changed of the files it was given, and note it unless it is told."""
@@ -208,101 +254,83 @@ class CarefulExecute(Execute):  # type: ignore[misc]
         whole = not self.work.is_dir()
         for path in lost:
             with suppress(OSError):
-                (self.work / path).parent.mkdir(parents=True, exist_ok=True)
-                shutil.copyfile(self.given / path, self.work / path)
+                if os.open in os.supports_dir_fd:
+                    _put_back(self.given / path, self.work / path, self.work)
+                else:  # Windows
+                    (self.work / path).parent.mkdir(parents=True, exist_ok=True)
+                    shutil.copyfile(self.given / path, self.work / path)
         if whole:
             with suppress(DeadKernelError, RuntimeError):
-                source = f"__import__('os').chdir({str(self.work)!r})"
-                self.wait_for_reply(self.kc.execute(source, silent=True, store_history=False))
+                self.run_silently(f"__import__('os').chdir({str(self.work)!r})")
         if told:
             return
         what = "the whole folder" if whole else ", ".join(sorted(map(str, lost)))
-        self._note(self.nb, index, "FilesChanged", f"deleted or changed {what}: it was put back")
-
-    # --- a kernel -----------------------------------------------------------------------------------------
-
-    def start_new_kernel(self, **options: Any) -> None:
-        """Start a kernel that knows the course, and nothing of its teacher."""
-        home = self.scratch / "home"
-        home.mkdir(exist_ok=True)
-        options["env"] = _environment(home, self.course)
-        if (self.scratch / "truth.geojson").exists():
-            options["env"][TRUTH_VARIABLE] = str(self.scratch / "truth.geojson")
-        super().start_new_kernel(**options)
-        self.groups += filter(None, [getattr(self.km.provisioner, "pgid", None)])
-
-    def start_new_kernel_client(self) -> Any:
-        """Prepare the kernel before the first cell runs."""
-        client = super().start_new_kernel_client()
-        self.wait_for_reply(client.execute(PREPARE.format(self.megabytes * MEGABYTE), silent=True, store_history=False))
-        return client
-
-    async def _async_check_alive(self) -> None:
-        """End a kernel that takes too much memory, where the system does not refuse it: Windows and macOS."""
-        if self._memory() > self.megabytes:
-            self.killed = f"this cell took more than {self.megabytes} MB of memory, and its kernel was ended"
-            await ensure_async(self.km.shutdown_kernel(now=True))
-            raise DeadKernelError(self.killed)
-        await super()._async_check_alive()
-
-    def _memory(self) -> float:
-        """Return what the kernel takes, in megabytes."""
-        pid = getattr(getattr(self.km, "provisioner", None), "pid", None)
-        with suppress(psutil.Error):
-            return psutil.Process(pid).memory_info().rss / MEGABYTE if pid else 0.0
-        return 0.0
-
-    def _restart_kernel(self) -> None:
-        self.shutdown_kernel = "immediate"
-        self._cleanup_kernel()
-        self.km = self.create_kernel_manager()
-        self.start_new_kernel()
-        self.start_new_kernel_client()
-
-    def _end_leftovers(self) -> None:
-        """End the programs that cells have started, where processes have groups: Linux and macOS."""
-        for group in self.groups:
-            with suppress(ProcessLookupError, PermissionError, AttributeError):
-                if group != os.getpgid(0):
-                    os.killpg(group, signal.SIGKILL)
+        self._note(index, "FilesChanged", f"deleted or changed {what}: it was put back")
 
     def output(self, outs: Any, msg: Any, display_id: Any, cell_index: int) -> Any:
         """Keep what a cell says, up to a limit: an endless loop may print all the time."""
         self.letters += len(str(msg["content"].get("text", "")))
-        if self.letters > CELL_LETTERS and msg["msg_type"] == "stream":
+        self.size += len(str(msg["content"]))
+        if self.size > CELL_BYTES or (self.letters > CELL_LETTERS and msg["msg_type"] == "stream"):
             return None
         return super().output(outs, msg, display_id, cell_index)
 
 
-def _environment(home: Path, course: str) -> dict[str, str]:
-    """Return a kernel's environment."""
-    fonts = Path(course) / ".primkit" / "matplotlib"  # the list of fonts takes seconds to make: one for all
-    fonts.mkdir(parents=True, exist_ok=True)
-    return {
-        **{name: os.environ[name] for name in KEPT_VARIABLES if name in os.environ},
-        **dict.fromkeys(("HOME", "USERPROFILE", "APPDATA", "TEMP", "TMP", "TMPDIR"), str(home)),
-        **dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1"),
-        "MPLCONFIGDIR": str(fonts),
-        "PYTHONPATH": course,
-        "PYTHONUSERBASE": site.getuserbase(),
-        "PYTHONWARNINGS": "ignore",  # nbgrader takes a test that writes to stderr as failed
-        "PYTHONDONTWRITEBYTECODE": "1",
-        "NBGRADER_EXECUTION": "autograde",
-    }
+def _links(folder: str, names: list[str]) -> list[str]:
+    """Name the links in a folder: what they lead to was not handed in."""
+    return [name for name in names if Path(folder, name).is_symlink()]
+
+
+def _copy_file(source: str, target: str) -> str:
+    """Copy what is in a file, and not who may write it."""
+    return str(shutil.copyfile(source, target, follow_symlinks=False))
 
 
 def _same(given: Path, now: Path) -> bool:
     try:
-        return filecmp.cmp(given, now, shallow=False)
+        return not now.is_symlink() and filecmp.cmp(given, now, shallow=False)
     except OSError:
         return False
 
 
-def _within(text: str, points: float) -> bool:
+def _put_back(given: Path, now: Path, work: Path) -> None:
+    """Write a file where it was; never through a link, for that may lead out of the folder."""
+    *folders, name = now.relative_to(work).parts
+    work.mkdir(exist_ok=True)
+    here = os.open(work, FOLDER)
     try:
-        return 0 <= float(text) <= float(points)
-    except ValueError:
-        return False
+        for part in folders:
+            here, above = _inner_folder(part, here), here
+            os.close(above)
+        _remove(name, here)
+        with open(os.open(name, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600, dir_fd=here), "wb") as file:
+            file.write(given.read_bytes())
+    finally:
+        os.close(here)
+
+
+FOLDER = os.O_RDONLY | getattr(os, "O_DIRECTORY", 0) | getattr(os, "O_NOFOLLOW", 0)
+
+
+def _inner_folder(name: str, here: int) -> int:
+    """Open a folder in another one; whatever else has its name is removed."""
+    with suppress(FileExistsError):
+        os.mkdir(name, dir_fd=here)
+    try:
+        return os.open(name, FOLDER, dir_fd=here)
+    except OSError:
+        os.unlink(name, dir_fd=here)
+        os.mkdir(name, dir_fd=here)
+        return os.open(name, FOLDER, dir_fd=here)
+
+
+def _remove(name: str, here: int) -> None:
+    try:
+        os.unlink(name, dir_fd=here)
+    except FileNotFoundError:
+        return
+    except OSError:  # a folder
+        shutil.rmtree(name, dir_fd=here)
 
 
 def _failed_with(name: str, cell: Any) -> bool:

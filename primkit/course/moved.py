@@ -24,7 +24,6 @@ from .course import Course
 MOVED = {
     "from primkit import grading": "from primkit.course import grading",
     "from primkit import personal": "from primkit.course import personal",
-    "primkit.grading.cells": "primkit.course.grading.failed_cells",
     "primkit.grading.table": "primkit.course.grading.mark",
     "primkit.grading.truth": "primkit.course.grading.own_board",
     "primkit.grading": "primkit.course.grading",

@@ -390,7 +390,12 @@ ANSWERS = {
         },
     },
     "busy_cells": {
-        "right": {"counter": busy_by_counter, "table": busy_by_table, "boxes": busy_by_boxes},
+        "right": {
+            "in place": busy_in_place,
+            "counter": busy_by_counter,
+            "table": busy_by_table,
+            "boxes": busy_by_boxes,
+        },
         "wrong": {
             "corner": (busy_corner, 0, "corner for centre"),
             "origin": (busy_origin, 0, "world origin for corner"),
@@ -407,7 +412,6 @@ ANSWERS = {
             "upper border": (busy_upper, 4, "upper border for lower"),
             "histogram": (busy_histogram, 4, "board's far border kept"),
             "x and y": (busy_swapped, 1, "x and y changed places"),
-            "in place": (busy_in_place, 0, "changes its arguments"),
         },
     },
 }

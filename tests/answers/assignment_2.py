@@ -6,7 +6,10 @@ import math
 import statistics
 
 import numpy as np
+from scipy.cluster.hierarchy import fcluster, linkage
+from scipy.sparse import coo_array
 from scipy.spatial.distance import cdist
+from sklearn.cluster import AgglomerativeClustering
 
 import primkit as pk
 
@@ -39,6 +42,44 @@ def cut_by_threshold(points, k):
     labels = np.roll(np.cumsum(separates), 1)
     labels[0] = 0
     return labels % k
+
+
+def cut_turned(points, k):
+    """Turn the ring so that it begins in the widest gap; then it is a chain."""
+    gaps = np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1)
+    first = int(gaps.argmax())
+    inner = np.delete(np.roll(gaps, -first), 0)
+    cuts = np.sort(np.argsort(inner)[::-1][: k - 1]) + 1
+    return np.roll(np.searchsorted(cuts, np.arange(len(points)), side="right"), first)
+
+
+def cut_by_walking(points, k):
+    """Plain Python: walk round the ring, and begin a new group at each of the widest steps."""
+    steps = [math.dist(points[i - 1], points[i]) for i in range(len(points))]
+    begins = sorted(range(len(points)), key=lambda i: -steps[i])[:k]
+    label, labels = 0, [0] * len(points)
+    for i in range(len(points)):
+        place = (min(begins) + i) % len(points)
+        label += place in begins
+        labels[place] = label
+    return labels
+
+
+def cut_by_ring_linkage(points, k):
+    """Single linkage along the ring alone: only neighbours may be joined."""
+    n = len(points)
+    if n <= 2 or k == n:
+        return np.arange(n) % k
+    ring = coo_array((np.ones(n), (np.arange(n), (np.arange(n) + 1) % n)), shape=(n, n))
+    model = AgglomerativeClustering(k, linkage="single", connectivity=ring + ring.T)
+    return model.fit_predict(points)
+
+
+def cut_by_nearness(points, k):
+    """Single linkage among all points: what is near may be no neighbour in the scan."""
+    if len(points) == 1:
+        return np.zeros(1)
+    return fcluster(linkage(points, "single"), k, "maxclust")
 
 
 def cut_ring(gaps, k):
@@ -222,6 +263,14 @@ def fog_nearest(points, threshold, rng):
     return float(angles[k]), float(nearest[k])
 
 
+def fog_two_farthest(points, threshold, rng):
+    """The line through the two hits that are farthest away."""
+    if len(np.unique(points, axis=0)) < 2:
+        return None
+    line = pk.fit_line(points[np.argsort(np.linalg.norm(points, axis=1))[-2:]])
+    return line.angle, line.offset
+
+
 def fog_never_none(points, threshold, rng):
     if len(points) == 0:
         return 0.0, 0.0
@@ -322,14 +371,21 @@ def corridor_degrees(left, right):
 # Each wrong answer with the points that it gets of the task's five, and the short name of its fault.
 ANSWERS = {
     "cut_scan": {
-        "right": {"joining": cut_by_joining, "threshold": cut_by_threshold},
+        "right": {
+            "joining": cut_by_joining,
+            "threshold": cut_by_threshold,
+            "turned": cut_turned,
+            "walking": cut_by_walking,
+            "ring linkage": cut_by_ring_linkage,
+        },
         "wrong": {
             "open chain": (cut_open, 3, "ring not closed"),
             "one cut too many": (cut_once_more, 0, "one cut too many"),
             "in bearing": (cut_in_bearing, 4, "gap in bearing"),
             "in range": (cut_in_range, 3, "gap in range"),
             "narrowest": (cut_narrowest, 1, "narrowest gaps"),
-            "linking": (cut_by_linking, 1, None),
+            "linking": (cut_by_linking, 0, None),
+            "nearness": (cut_by_nearness, 4, "joined by nearness"),
         },
     },
     "k_medians": {
@@ -352,7 +408,8 @@ ANSWERS = {
             "least squares": (fog_least_squares, 1, "least squares over all"),
             "wrong side": (fog_nearest, 1, "hits behind the wall"),
             "never none": (fog_never_none, 3, "a line from one point"),
-            "farthest pair": (fog_farthest_pair, 3, "raises ValueError"),
+            "two farthest hits": (fog_two_farthest, 2, "line through the farthest hits"),
+            "farthest pair": (fog_farthest_pair, 0, "raises ValueError"),
         },
     },
     "corridor": {

@@ -217,6 +217,20 @@ def name_by_spread(points, spread):
     return ("coin", "nut")[misfit(points) > 1.35 * spread]
 
 
+def name_by_better_fit(points, spread):
+    """The least squares for a circle and for a regular hexagon: the smaller one wins, whatever the spread."""
+    circle = pk.fit_circle(points)
+    round_off = np.sqrt(np.mean(circle.signed_distance(points) ** 2))
+
+    def off(q):
+        turns = q[3] + np.pi / 3 * np.arange(6)
+        return ((points - q[:2]) @ [np.cos(turns), np.sin(turns)]).max(axis=1) - q[2]
+
+    starts = [[*circle.center, 0.95 * circle.radius, turn] for turn in np.pi / 18 * np.arange(6)]
+    hexagon_off = min(np.sqrt(np.mean(least_squares(off, start).fun ** 2)) for start in starts)
+    return "coin" if round_off < hexagon_off else "nut"
+
+
 def name_coin(points, spread):
     return "coin"
 
@@ -342,7 +356,12 @@ ANSWERS = {
         },
     },
     "nut_or_coin": {
-        "right": {"waves": name_by_waves, "rivals": name_by_rivals, "spread": name_by_spread},
+        "right": {
+            "waves": name_by_waves,
+            "rivals": name_by_rivals,
+            "better fit": name_by_better_fit,
+            "spread": name_by_spread,
+        },
         "wrong": {
             "always coin": (name_coin, 0, "one name for all"),
             "one millimetre": (name_one_millimetre, 0, "a fixed limit"),

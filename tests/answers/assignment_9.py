@@ -289,8 +289,8 @@ ANSWERS = {
             "too large": (shapes_large, 7, None),
             "shifted": (shapes_shifted, 8, None),
             "headings forgotten": (shapes_in_robot_frame, 1, "right in one frame only"),
-            "ready-made": (shapes_ready_made, 0, "uses find_shapes"),
         },
+        "refused": {"ready-made": (shapes_ready_made, 0, "uses find_shapes")},  # where a submission runs
     },
     "measure_pillars": {
         "right": {"tree": pillars_by_tree, "kasa": pillars_by_kasa},

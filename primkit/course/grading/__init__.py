@@ -1,7 +1,20 @@
 """Grading: points for a student's function, part by part; what the hidden tests of a problem set call.
 
 A ``Task`` is made of parts, and each part of a ``Check`` and its points, all or none. Whatever a part meets, an endless
-loop, an exception, a changed argument, costs that part alone.
+loop, an exception, the end of Python, costs that part alone. Only what a function returns earns points.
+
+When a submission is graded, tests and student are two processes, and only plain values cross:
+
+====================  ==================================================================
+``task.py``           a task, its parts, and how a function is marked
+``mark.py``           points as text, as HTML and as data
+``judging.py``        a graded cell of the teacher's, run in the judge's process
+``workers.py``        the judge's side of the line: a student's function, from afar
+``serving.py``        the student's side of it
+``wire.py``           what is said on the line
+``plain_values.py``   what can be said
+``own_board.py``      the board behind a student's scans
+====================  ==================================================================
 
 In:  the student's function, or its name and where it is looked up.
 Out: the points, and a table that says for each part what is off.
@@ -18,9 +31,9 @@ half: 0 of 2 points
 Not here: solutions. Those of the problem sets stay with the teacher.
 """
 
-from .limit import OutOfTime, TimeLimit
 from .mark import MIME, Mark, Row
 from .own_board import personal_truth
 from .task import Part, Task
+from .workers import OutOfTime
 
-__all__ = ["Part", "Task", "personal_truth", "Mark", "Row", "MIME", "OutOfTime", "TimeLimit"]
+__all__ = ["Part", "Task", "personal_truth", "Mark", "Row", "MIME", "OutOfTime"]

@@ -14,6 +14,9 @@ half: 2 of 2 points
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from html import escape
 from typing import Any
@@ -26,11 +29,12 @@ MIME = "application/vnd.primkit.mark+json"
 
 @dataclass(frozen=True)
 class Row:
-    """One part: what it asks for, its points, and what the check said."""
+    """One part: what it asks for, its points, what the check said, and what was seen beside and costs nothing."""
 
     says: str
     of: float
     answer: Answer
+    remarks: tuple[str, ...] = ()
 
     @property
     def points(self) -> float:
@@ -41,6 +45,12 @@ class Row:
     def off(self) -> str:
         """What is off; empty when nothing is."""
         return "" if self.answer.right else self.answer.says
+
+    @property
+    def told(self) -> str:
+        """What is off, and the remarks."""
+        remark = f"(It {' and '.join(self.remarks)}: that costs nothing here.)" if self.remarks else ""
+        return "\n".join(filter(None, [self.off, remark]))
 
 
 @dataclass(frozen=True)
@@ -74,6 +84,7 @@ class Mark:
                     "verdict": row.answer.verdict,
                     "fault": row.answer.fault,
                     "off": row.off,
+                    "remarks": list(row.remarks),
                 }
                 for row in self.rows
             ],
@@ -82,7 +93,7 @@ class Mark:
     @property
     def common(self) -> str:
         """What is off in every part alike, to be said once; empty otherwise."""
-        said = {row.off for row in self.rows}
+        said = {row.told for row in self.rows}
         return said.pop() if len(said) == 1 and len(self.rows) > 1 else ""
 
     @property
@@ -92,7 +103,7 @@ class Mark:
     def __repr__(self) -> str:
         lines = [self._headline, *self.common.splitlines()]
         for row in self.rows:
-            told = [] if self.common else row.off.splitlines()
+            told = [] if self.common else row.told.splitlines()
             off = "".join(f"\n    {line}" for line in told[1:])
             first = f": {told[0]}" if told else ""
             lines.append(f"{VERDICT_SIGNS[row.answer.verdict]} {row.points:g} of {row.of:g}  {row.says}{first}{off}")
@@ -128,5 +139,32 @@ def _html_row(row: Row, *, told: bool = False) -> str:
     verdict = row.answer.verdict
     points = f"{VERDICT_SIGNS[verdict]} {row.points:g} of {row.of:g}".replace(" ", "&nbsp;")
     sign = f'<b style="color:{VERDICT_COLORS[verdict]}">{points}</b>'
-    off = "" if row.answer.right else f"<i>{verdict}</i>" + ("" if told else f": {_lines(row.off)}")
+    off = "" if row.answer.right else f"<i>{verdict}</i>"
+    if row.told and not told:
+        off += f"{': ' if off else ''}{_lines(row.told)}"
     return "<tr>" + "".join(f'<td style="{CELL_STYLE}">{cell}</td>' for cell in (sign, escape(row.says), off)) + "</tr>"
+
+
+SHOWN: ContextVar[list[Mark] | None] = ContextVar("SHOWN", default=None)  # where the judge looks for marks
+
+
+@contextmanager
+def shown_marks() -> Iterator[list[Mark]]:
+    """Keep marks that are shown from now on, in the place of showing them."""
+    marks: list[Mark] = []
+    before = SHOWN.set(marks)
+    try:
+        yield marks
+    finally:
+        SHOWN.reset(before)
+
+
+def show(mark: Mark) -> None:
+    """Show a table in the notebook that runs this, if one does."""
+    from IPython import get_ipython
+    from IPython.display import display
+
+    if (marks := SHOWN.get()) is not None:
+        marks.append(mark)
+    elif get_ipython() is not None:
+        display(mark)  # type: ignore[no-untyped-call]  # IPython gives it no types

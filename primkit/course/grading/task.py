@@ -10,26 +10,25 @@ half: 0 of 2 points
 ✗ 0 of 2  halves lengths: in 1 of 2 cases. For example half(x=3): got 0.5 m, expected 1.5 m.
 
 The last expression of a grade cell is ``task.mark("half", globals())``: nbgrader reads its number as the cell's points.
+When a submission is graded, this cell runs in the judge's process, and what stands in ``globals()`` under a student's
+name is a ``Remote``: see ``workers.py``. In a teacher's own notebook it is the function itself, and the same values
+cross: arguments go to it, and results come back, through ``plain_values.py``.
 """
 
 from __future__ import annotations
 
-import io
 import re
-from collections.abc import Callable, Iterable, Mapping
-from contextlib import redirect_stderr
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ...arguments import as_positive
 from ...checks.answer import Answer, Check
-from .failed_cells import failure
-from .limit import OutOfTime, TimeLimit
-from .mark import Mark, Row
+from .mark import Mark, Row, show
+from .plain_values import pack, unpack
+from .workers import Ended, OutOfTime, Remote
 
-PART_SECONDS = 5.0  # for each part; a check with its few hundred cases needs less than one
-
-
+PART_SECONDS = 5.0  # of processor time for each part; a check with its few hundred cases needs less than one
 ALL_WRONG = re.compile(r"in (\d+) of \1 cases\.")  # all of them are wrong
 OTHER_FORM = re.compile(  # how judges begin what they expect, when a result has another form
     r"expected (a number such as|numbers in|points in an array|one label for|a circle:|a line:|a list|a set of)"
@@ -55,23 +54,56 @@ class Part:
     check: Check
 
     def answer(self, function: Any, seconds: float) -> Answer:
-        """Judge a function, whatever it does, within so many seconds."""
+        """Judge a function, whatever it does, within so many seconds where they can be told: see ``Remote``."""
         name = self.check.name
         try:
-            # What is printed to stderr would count as a failed cell.
-            with redirect_stderr(io.StringIO()), TimeLimit(seconds):
-                return _name_fault(self.check(function))
+            return _name_fault(self.check(function.afresh(seconds) if callable(function) else function))
         except OutOfTime:
             says = f"{name} did not end within {seconds:g} s: is there a loop that never ends, or is it too slow?"
             return Answer("error", says, "out of time")
-        except KeyboardInterrupt:  # the whole cell's time is over, or somebody waits no longer
+        except KeyboardInterrupt:  # somebody waits no longer
             raise
+        except Ended as ended:
+            return Answer("error", f"{name} ends Python: a function returns ({ended}).", "ends Python")
         except Exception as error:  # the judge met something that it does not know
             says = f"{name} returns what cannot be judged ({type(error).__name__}: {error})."
             return Answer("error", says, "returns what cannot be judged")
         except BaseException as error:  # exit(), and whatever else wants to end Python
             kind = type(error).__name__
             return Answer("error", f"{name} ends Python with {kind}: a function returns.", f"raises {kind}")
+
+
+@dataclass(frozen=True)
+class Missing:
+    """In the place of a function that a notebook does not define: why."""
+
+    name: str
+    answer: Answer
+
+    def afresh(self, _seconds: float) -> Missing:
+        """Return itself."""
+        return self
+
+    def __call__(self, *_args: Any) -> Any:
+        """Say what Python says."""
+        raise NameError(f"name {self.name!r} is not defined")
+
+
+@dataclass
+class Local:
+    """A function of this very process: what crosses is what would cross from another one."""
+
+    function: Callable[..., Any]
+    remarks: set[str] = field(default_factory=set)
+
+    def afresh(self, _seconds: float) -> Local:
+        """Return itself: here nothing ends a loop but the person who waits for it."""
+        self.remarks = set()
+        return self
+
+    def __call__(self, *args: Any) -> Any:
+        """Call the function with copies, and return a copy."""
+        return unpack(pack(self.function(*unpack(pack(args)))))
 
 
 @dataclass(frozen=True)
@@ -123,10 +155,10 @@ class Task:
         scope : mapping, optional
             Where the name is looked up: a notebook's ``globals()``.
         seconds : float
-            Time limit for each part.
+            Time limit for each part, in seconds of processor time.
         """
         mark = self.marked(function, scope, seconds=seconds)
-        _show(mark)
+        show(mark)
         return mark.points
 
     def marked(
@@ -139,22 +171,35 @@ class Task:
         """Return points and table together; see ``mark``."""
         seconds = as_positive(seconds, "seconds")
         if isinstance(function, str):
-            if function not in (scope or {}):
-                missing = _explain_missing(function)
-                return Mark(self.name, tuple(Row(part.says, part.points, missing) for part in self.parts))
-            function = (scope or {})[function]
-        rows = (Row(part.says, part.points, part.answer(function, seconds)) for part in self.parts)
-        return Mark(self.name, tuple(rows))
+            function = (scope or {}).get(function, missing(function))
+        if isinstance(function, Missing):
+            return Mark(self.name, tuple(Row(part.says, part.points, function.answer) for part in self.parts))
+        if callable(function):
+            function = self.called(function if isinstance(function, Remote) else Local(function))
+        return Mark(self.name, tuple(self._rows(function, seconds)))
+
+    def called(self, function: Remote | Local) -> Any:
+        """Return how the parts call a function: here, each of them as it is."""
+        return function
+
+    def _rows(self, function: Any, seconds: float) -> Iterator[Row]:
+        """Yield a row for each part; the first one whose time is over has one more try: the machine may be busy."""
+        tries = 1
+        for part in self.parts:
+            answer = part.answer(function, seconds)
+            if answer.fault == "out of time" and tries:
+                tries, answer = 0, part.answer(function, seconds)
+            yield Row(part.says, part.points, answer, tuple(sorted(getattr(function, "remarks", ()))))
 
 
-def _explain_missing(name: str) -> Answer:
+def missing(name: str, failed: tuple[str, str] | None = None) -> Missing:
     """Return why there is no function: its cell has failed, or it has another name, or none was written."""
-    failed = failure(name)
     if failed is None:
         says = f"there is no function {name}: run its cell, and keep its name."
-        return Answer("not attempted", says, "no such function")
+        return Missing(name, Answer("not attempted", says, "no such function"))
     kind, told = failed
-    return Answer("error", f"there is no function {name}: its cell stops with {told}.", f"its cell stops with {kind}")
+    says = f"there is no function {name}: its cell stops with {told}."
+    return Missing(name, Answer("error", says, f"its cell stops with {kind}"))
 
 
 def _name_fault(answer: Answer) -> Answer:
@@ -164,12 +209,3 @@ def _name_fault(answer: Answer) -> Answer:
     if "is there a return?" in answer.says:
         return replace(answer, fault="returns nothing")
     return replace(answer, fault="returns what cannot be judged") if OTHER_FORM.search(answer.says) else answer
-
-
-def _show(mark: Mark) -> None:
-    """Show a table in the notebook that runs this, if one does."""
-    from IPython import get_ipython
-    from IPython.display import display
-
-    if get_ipython() is not None:
-        display(mark)  # type: ignore[no-untyped-call]  # IPython gives it no types

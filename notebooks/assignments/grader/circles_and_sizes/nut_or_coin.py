@@ -24,6 +24,8 @@ Floats = NDArray[np.float64]
 
 CASES = 40  # random ones, in each part
 
+PHASES = 12  # turns of a hexagon that are tried, within a sixth of a full turn
+PLAINLY = 1.1  # the wrong outline must miss the points by so much more than the right one
 BENT = 0.0403  # a regular hexagon of reach 1 misses its best circle by this much, root mean square
 NAMES = ("nut", "coin")
 EXPLAINED = 1.7  # mean square over spread square: a coin's is 1, that of the nuts here 2.5 and more
@@ -50,6 +52,42 @@ def judge_name(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None:
     return None if isinstance(got, str) and got == expected else f"got {shown(got)}, expected {shown(expected)}"
 
 
+def off_hexagon(points: Floats) -> float:
+    """Return the root mean square distance of points from their best regular hexagon, metres: over all turns of it."""
+    circle = pk.fit_circle(points)
+    best = INF
+    for turn in TURN / 6 * np.arange(PHASES) / PHASES:
+        middle = points.mean(axis=0) if circle is None else circle.center
+        for _ in range(4):  # each point to the side that it faces, then the hexagon to the points
+            away = points - middle
+            side = turn + TURN / 6 * np.round((np.arctan2(*away.T[::-1]) - turn) * 6 / TURN)
+            lines = np.column_stack([np.cos(side), np.sin(side), np.ones(len(side))])
+            along = (lines[:, :2] * points).sum(axis=1)
+            fit = np.linalg.lstsq(lines, along, rcond=None)[0]
+            middle = fit[:2]
+        best = min(best, float(np.sqrt(np.mean((lines @ fit - along) ** 2))))
+    return best
+
+
+def clear(points: Floats, spread: float, nut: bool) -> bool:
+    """Tell whether the spread names it, and the better one of both fits as well: by a tenth or more."""
+    circle, hexagon = off_circle(points), off_hexagon(points)
+    by_fit = circle > PLAINLY * hexagon if nut else hexagon > PLAINLY * circle
+    return by_fit and (named(points, spread) == "nut") == nut
+
+
+def clear_ones(
+    rng: np.random.Generator, noise: tuple[Any, Any], share: tuple[float, float]
+) -> Iterator[tuple[Any, ...]]:
+    """Yield clear nuts and coins by turns, with noise for each of the two, of which a share is seen."""
+    n = 0
+    while n < CASES:
+        points, spread = seen(rng, n % 2 == 0, rng.uniform(*noise[n % 2]), rng.uniform(*share))
+        if clear(points, spread, n % 2 == 0):
+            n += 1
+            yield points, spread
+
+
 def seen(rng: np.random.Generator, nut: bool, noise: float, share: float) -> tuple[Floats, float]:
     """Return points on a share of an outline and their spread; ``noise`` counts in what a nut misses its circle by."""
     reach, n = rng.uniform(0.02, 0.06), 150
@@ -67,20 +105,17 @@ def seen(rng: np.random.Generator, nut: bool, noise: float, share: float) -> tup
 
 def little_noise(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     """Yield nuts and coins of all sizes, with little noise."""
-    for n in range(CASES):
-        yield seen(rng, n % 2 == 0, rng.uniform(0.1, 0.3), 1.0)
+    yield from clear_ones(rng, ((0.1, 0.3), (0.1, 0.3)), (1.0, 1.0))
 
 
 def much_noise(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     """Yield nuts with noise, and coins with noise up to twice what a nut would miss its circle by."""
-    for n in range(CASES):
-        yield seen(rng, n % 2 == 0, rng.uniform(0.4, 0.6) if n % 2 == 0 else rng.uniform(0.4, 2.0), 1.0)
+    yield from clear_ones(rng, ((0.4, 0.6), (0.4, 2.0)), (1.0, 1.0))
 
 
 def half_seen(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     """Yield nuts and coins of which about half is seen."""
-    for n in range(CASES):
-        yield seen(rng, n % 2 == 0, rng.uniform(0.2, 0.4), rng.uniform(0.5, 0.65))
+    yield from clear_ones(rng, ((0.2, 0.4), (0.2, 0.4)), (0.5, 0.65))
 
 
 def parted_by(measure: Callable[[Case], float]) -> Callable[[list[Case]], bool]:

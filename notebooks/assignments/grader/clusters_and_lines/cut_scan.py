@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.cluster.hierarchy import fcluster, linkage
 
 from primkit.checks.judges import groups
 
@@ -61,6 +62,14 @@ def by(measure: Any) -> Any:
         return cut_before(np.argsort(gaps)[len(gaps) - k :], len(points))
 
     return cut
+
+
+def by_linkage(points: Floats, k: int) -> NDArray[np.int64]:
+    """Join what is nearest, whether neighbours in the ring or not, until k groups are left."""
+    if len(points) == 1:
+        return np.zeros(1, dtype=int)
+    labels: NDArray[np.int64] = fcluster(linkage(points, "single"), k, "maxclust")
+    return labels
 
 
 def in_bearing(a: Floats, b: Floats) -> Floats:
@@ -122,6 +131,28 @@ def one_before_another(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
         bearings = rng.uniform(0, TURN) + np.concatenate([near, far])
         ranges = np.concatenate([np.full(len(near), rng.uniform(0.06, 0.1)), np.full(len(far), rng.uniform(0.25, 0.3))])
         yield ranges[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)]), 2
+        if n % 3 == 0:
+            yield pole_before_wall(rng)
+
+
+def pole_before_wall(rng: np.random.Generator) -> tuple[Floats, int]:
+    """Return a pole before a wall, and behind the robot a thing of two parts: four groups, for the pole cuts the wall.
+
+    The wall's two halves are nearer to each other than the parts of that thing; but they are no neighbours.
+    """
+    shadow, gap = rng.uniform(0.1, 0.13), rng.uniform(0.2, 0.25)
+    far, near, back = rng.uniform(0.26, 0.3), rng.uniform(0.08, 0.12), rng.uniform(0.24, 0.28)
+    pieces = (
+        (far, np.delete(np.arange(-0.7, -shadow / 2, 0.03), 7)),  # a lost hit: the widest gap in bearing but three
+        (near, np.arange(-shadow / 2 + 0.01, shadow / 2, 0.03)),
+        (far, np.arange(shadow / 2 + 0.01, 0.7, 0.03)),
+        (back, np.arange(np.pi - 0.5, np.pi - gap / 2, 0.03)),
+        (back, np.arange(np.pi + gap / 2, np.pi + 0.5, 0.03)),
+    )
+    bearings = rng.uniform(0, TURN) + np.concatenate([turns for _, turns in pieces])
+    ranges = np.concatenate([np.full(len(turns), away) for away, turns in pieces])
+    points = ranges[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)])
+    return points, 4
 
 
 def one_or_all(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
@@ -154,6 +185,11 @@ CUT_SCAN = task(
             "There is one group too many: how many pieces does a chain make that is cut k times? And a ring?",
             like=one_too_many,
             name="one cut too many",
+        ),
+        Fault(
+            "Groups are stretches of the ring: what is near, but comes later in the scan, belongs to another one.",
+            like=by_linkage,
+            name="joined by nearness",
         ),
         Fault(
             "Neighbours in bearing may be far apart in space: how far is it from one point to the next?",

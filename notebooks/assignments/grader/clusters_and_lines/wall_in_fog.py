@@ -59,12 +59,16 @@ def judge_wall(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
 
 
 def foggy(rng: np.random.Generator, row: int) -> tuple[Floats, float, np.random.Generator]:
-    """Return hits in fog before a wall, with ``row`` hits on a straight row before it, shuffled; threshold 3 mm."""
+    """Return hits in fog before a wall, with ``row`` hits on a straight row before it, shuffled; threshold 3 mm.
+
+    The wall goes on farther to one side, so that its farthest hits are neighbours.
+    """
     bearing, away = rng.uniform(0, TURN), rng.uniform(0.3, 0.5)
+    shift = rng.choice([-1, 1]) * rng.uniform(0.1, 0.25)
     ahead, aside = np.array([np.cos(bearing), np.sin(bearing)]), np.array([-np.sin(bearing), np.cos(bearing)])
 
     def place(out: Any, side: Any) -> Floats:
-        return np.multiply.outer(out, ahead) + np.multiply.outer(side, aside)
+        return np.multiply.outer(out, ahead) + np.multiply.outer(side + shift, aside)
 
     wall = place(away + rng.uniform(-0.001, 0.001, 30), np.linspace(-0.4, 0.4, 30) + rng.uniform(-0.01, 0.01, 30))
     fog = place(rng.uniform(0.05, away - 0.02, 45), rng.uniform(-0.4, 0.4, 45))
@@ -113,6 +117,14 @@ def through_all(points: Floats, _threshold: float, _rng: Any) -> Any:
     return None if line is None else (line.angle, line.offset)
 
 
+def through_farthest(points: Floats, _threshold: float, _rng: Any) -> Any:
+    """Take the line through the two hits that are farthest from the robot."""
+    if len(np.unique(points, axis=0)) < 2:
+        return None
+    line = pk.fit_line(points[np.argsort(np.hypot(*points.T))[-2:]])
+    return None if line is None else (line.angle, line.offset)
+
+
 WALL_IN_FOG = task(
     "wall_in_fog",
     last_wall,
@@ -127,6 +139,11 @@ WALL_IN_FOG = task(
             "Least squares over all hits finds the middle of the fog: not all hits belong to the wall.",
             like=through_all,
             name="least squares over all",
+        ),
+        Fault(
+            "The two farthest hits may be neighbours: a line through them turns with their errors.",
+            like=through_farthest,
+            name="line through the farthest hits",
         ),
         Fault(
             "There are hits behind this line, and light does not come through a wall: most inliers are not enough.",
