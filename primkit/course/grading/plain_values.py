@@ -32,7 +32,7 @@ from ...shapes import Circle, Polygon
 
 DEPTH = 20  # how deep values may lie in each other
 DIGITS = 400  # of a whole number
-LONGEST = 10**7  # along one axis of an array
+LONGEST_AXIS = 10**7  # along one axis of an array
 MOST_KEYS = 10_000  # of a set or a dictionary: with chosen keys, each costs as much as all before it
 NAME_LETTERS = 60
 ARRAY_TYPE = re.compile(r"\|b1|[|<>=]?[iu][1248]|[<>=]?f[248]|[<>=]?c(8|16)|[<>=]?U\d{1,4}")
@@ -149,7 +149,7 @@ def _read(value: Any, depth: int) -> Any:
 
 
 def _read_array(kind: str, shape: list[int], content: str) -> Any:
-    if not ARRAY_TYPE.fullmatch(kind) or len(shape) > DEPTH or not all(0 <= n <= LONGEST for n in shape):
+    if not ARRAY_TYPE.fullmatch(kind) or len(shape) > DEPTH or not all(0 <= n <= LONGEST_AXIS for n in shape):
         raise ValueError("an array of no such kind")
     data = bytearray(base64.b64decode(content, validate=True))
     if kind == "|b1":
