@@ -47,7 +47,7 @@ class Finding:
 
 def check(course: Course, environment: Path = ENVIRONMENT) -> list[Finding]:
     """Look at everything that a course needs."""
-    installed = *_python(), *_packages(environment), *_commands(), *_kernel()
+    installed = *_python(), *_packages(environment), *_commands(), *_kernel(), _walls()
     moved = (Finding(old.file, f"names {old.name}, which has moved", old.mend) for old in old_names(course))
     looked_at = *_folder(course), *_sources(course), *moved, *_points(course), *_settings(course), *_secrets(course)
     return [*installed, _walls(), *looked_at, *_gradebook(course)]

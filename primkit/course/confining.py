@@ -23,7 +23,7 @@ PACKAGE = Path(__file__).resolve().parents[1]
 DATA = PACKAGE.parent / "data"  # in a clone; a wheel holds it inside
 OWN_FOLDERS = ("work", "home", "run")
 SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32")
-FROM_ETC = ("ld.so.cache", "ld.so.conf", "ld.so.conf.d", "alternatives", "fonts", "localtime", "mime.types")
+SYSTEM_SETTINGS = ("ld.so.cache", "ld.so.conf", "ld.so.conf.d", "alternatives", "fonts", "localtime", "mime.types")
 TEMPORARY_BYTES = 2**28  # that /tmp and /dev/shm may hold, each
 BY_OTHERS = "PRIMKIT_CONFINED_BY"  # a variable that names what confines the whole grading: "a container"
 UNPROTECTED = "unprotected: no wall stands between a student's code and your files"
@@ -67,6 +67,7 @@ def _walls(library: Path, hidden: Sequence[Path] = ()) -> list[str]:
 def _readable(library: Path) -> Iterator[Path]:
     """Yield what a kernel needs to run Python, and the library."""
     yield from (Path(path) for path in SYSTEM if Path(path).exists())
-    yield from (Path("/etc", name) for name in FROM_ETC if Path("/etc", name).exists())
+    yield from (Path("/etc", name) for name in SYSTEM_SETTINGS if Path("/etc", name).exists())
     folders = {Path(sys.prefix), Path(sys.base_prefix), Path(site.getuserbase(), "lib"), library, DATA}
+    folders |= {library.parent / DATA.name}  # a link, beside a copy of the library
     yield from sorted(path for path in folders if path.exists() and not path.is_relative_to("/usr"))

@@ -64,11 +64,15 @@ class WholeNotebook(NbGraderPreprocessor):  # type: ignore[misc]
         about = resources["nbgrader"]
         path = Path(self.course, "release", about["assignment"], f"{about['notebook']}.ipynb")
         released = nbformat.read(path, as_version=4).cells if path.is_file() else None  # type: ignore[no-untyped-call]
-        known = None if released is None else {_mark(cell) for cell in released}
+        known = (
+            None if released is None else {_mark(cell): cell.metadata["nbgrader"] for cell in released if _mark(cell)}
+        )
         for cell in nb.cells:
             name = _mark(cell)
             if name is None or (known is not None and name not in known):
                 cell.metadata.pop("nbgrader", None)
+            elif known is not None:
+                cell.metadata["nbgrader"] = known[name]  # whatever the file says of its points
         lost = _put_back(nb, released or [])
         nb.metadata["primkit"] = {"faults": [{"cell": name, "name": "cell missing", "says": MISSING} for name in lost]}
         return nb, resources
