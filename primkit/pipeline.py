@@ -44,6 +44,7 @@ WarmStarts = dict[tuple[bytes, float, int, bool, bool, tuple[str, ...]], Group]
 
 SAME_SPREAD = 1.25  # fits are done anew when the spread comes out farther than this from what was supposed
 CONTRADICTED = 1.5  # neighbours scatter less than their noise lets them, if anything
+MOST_LOW = 2.5  # neighbours scatter at least by this part of the spread
 SPREAD_ROUNDS = 2  # from the neighbours' estimate, a third low at most, two rounds get there
 
 
@@ -293,7 +294,8 @@ def _explain_all(
     What is told is not believed where neighbours scatter much farther.
     """
     told = None if settings.noise_std is None else spread_across(settings.noise_std)
-    spread = last if last and told is None else _in_steps(spread_of(np.vstack([np.empty((0, 2)), *together])))
+    points = np.vstack([np.empty((0, 2)), *together])
+    spread = last if last and told is None else _in_steps(spread_of(points))
     if told is not None and spread <= CONTRADICTED * told:
         return [explain(points, told) for points in together], told
     groups = [explain(points, spread) for points in together]
@@ -301,7 +303,7 @@ def _explain_all(
         fitted = _spread_of_fits(groups)
         if fitted is None or 1 / SAME_SPREAD <= fitted / spread <= SAME_SPREAD:
             break
-        spread = _in_steps(fitted)
+        spread = _in_steps(min(fitted, MOST_LOW * spread_of(points)))  # fits are far off where shapes are not parted
         groups = [explain(points, spread) for points in together]
     if told is not None:
         times = f"{spread / told:.1f} times as far as that"

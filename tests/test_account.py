@@ -195,7 +195,7 @@ def test_the_work_is_bounded_and_the_result_says_so(monkeypatch):
     monkeypatch.setattr(
         candidates, "judged", lambda points, *a, **k: judged.append(len(points)) or real(points, *a, **k)
     )
-    points = np.random.default_rng(0).uniform(-0.2, 0.2, (12_000, 2))
+    points = np.random.default_rng(0).uniform(-0.2, 0.2, (22_000, 2))
     found, again = (pk.find_shapes(points, rng=0) for _ in range(2))
     assert found.bounded
     assert max(judged) <= candidates.MOST_POINTS
@@ -206,3 +206,14 @@ def test_the_work_is_bounded_and_the_result_says_so(monkeypatch):
     assert not pk.find_shapes(board, rng=0).bounded
     monkeypatch.setattr(regroup, "MOST_WORK", 0)
     assert pk.find_shapes(board, rng=0).bounded
+
+
+def test_two_shapes_linked_as_one_do_not_pass_for_noise():
+    """One outline around both would miss the points by some centimetres, and then have them lie on it."""
+    world = pk.World(
+        [pk.Polygon([(-0.3, -0.1), (-0.1, -0.1), (-0.1, 0.02), (-0.3, 0.02)]), pk.Circle((0.0, 0.0), 0.09)]
+    )
+    assert world.least_gap() == pytest.approx(0.01)
+    found = pk.find_shapes(seen_on(world), rng=0)
+    assert pk.evaluate(found, world).weighted_accuracy == 1.0
+    assert all(one.rms < 0.001 for one in found)

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import primkit as pk
+from primkit.pipeline import find_again
 from primkit.robust import candidates as bounded
 from primkit.robust import choice, regroup
 from primkit.robust.candidates import candidates, explained_again
@@ -202,9 +203,9 @@ def test_a_growing_group_is_not_looked_at_anew(monkeypatch):
     real = regroup.candidates
     monkeypatch.setattr(regroup, "candidates", lambda *a, **k: looks.append(1) or real(*a, **k))
     ring = pk.Circle((0.1, 0.0), 0.06).outline(200)
-    memory = {}
+    warm = {}
     for n in (190, 195, 200):
-        (found,) = pk.find_shapes(ring[np.random.default_rng(0).permutation(200)[:n]], memory=memory, rng=0)
+        (found,) = find_again(ring[np.random.default_rng(0).permutation(200)[:n]], warm, rng=0)
         assert found.kind == "circle"
     assert looks == [1]
     assert found.margin > 100  # rivals are fitted to all points, when it is asked for

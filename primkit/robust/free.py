@@ -47,6 +47,7 @@ PIECE_COST = 20.0  # about the price of a side's two numbers, see ``evidence.pri
 DEARER, TIMES_DEARER = 2.0, 4  # where pieces do not close, fewer are tried
 SIDE_CELLS, SIDE_SPREADS = 5.0, 2.0  # no side is shorter
 SHORT, FLAT_TURN = 4.0, np.radians(35)  # of the least side; where two pieces may be one
+ENOUGH_TO_CUT = 600  # points; of more, the least misfit is worth a piece
 CUT_LOOKS = 2  # strays lead cuts astray: once more without them
 FAR_SPREADS, FAR_CELLS = 9.0, 4.0  # what is farther from the first outline is a stray to the second
 
@@ -65,7 +66,7 @@ def free_outline(points: Floats, spread: float) -> Outlines | None:
     kept, found = points, None
     for _ in range(CUT_LOOKS):
         ordered = round_order(kept, spread)
-        starts = () if ordered is None else _outlines(ordered, spread, least)
+        starts = () if ordered is None else _outlines(ordered[:: -(-len(ordered) // ENOUGH_TO_CUT)], spread, least)
         start = next((o for o in starts if o.closes(least)[0]), None)
         if start is None:
             break

@@ -33,8 +33,8 @@ from ..lines import fit_line
 from ..seen import seen_shares
 from ..segmentation import LEAST_GROUP, LINK, kmeans, link
 from ..shapes import KINDS, Polygon, Shape
-from .candidates import candidates, explained_again
-from .choice import Choice
+from .candidates import MOST_POINTS, candidates, explained_again
+from .choice import CERTAIN, Choice
 from .evidence import Candidate, joint_cost
 from .scatter import NOWHERE, SIGMAS
 
@@ -48,6 +48,7 @@ WELL_EXPLAINED = 0.9  # share of a group's points on its shape; with fewer, the 
 MOST_ACROSS = 0.45  # m: the paper's largest rectangle is 0.424 m from corner to corner; wider pieces are of two shapes
 HULL_SPREADS, HULL_CELLS = 6.0, 0.002  # the hull runs along the outermost points: others lie up to so much inside [m]
 FINER_LINKS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0)  # a group is cut where it falls apart first, linked so much more finely
+JOINT_COST = 40.0  # two shapes seldom stand so close that nothing is seen between them
 FEW_NEW = 0.1  # share of new points up to which a group is fitted anew from what it was
 FEW_OFF = 0.02  # share of the points by which more may lie beside a group's shape then
 SURE = 30.0  # margin up to which a few points more may change what a group is
@@ -236,13 +237,16 @@ def _split_all(
 
 
 def _gain(parts: tuple[Group, ...], group: Group) -> float:
-    """Return by how much the parts cost more than the whole; infinite without parts."""
-    return cost_of(parts) - cost_of([group]) if parts else float("inf")
+    """Return by how much the parts cost more than the whole, a joint that no beam met included; infinite without."""
+    if not parts:
+        return float("inf")
+    whole = group.choice.fit >= CERTAIN and not group.choice.inside.any()
+    return cost_of(parts) - cost_of([group]) + JOINT_COST * whole
 
 
 def _halves(group: Group, spread: float, n_shapes: int | None, explain: Explain) -> tuple[Group, ...]:
-    """Return a group as two; nothing when it is too small, or well explained as it is."""
-    if not group.ranked or len(group.points) < 2 * LEAST_GROUP:
+    """Return a group as two; nothing when it is too small or too large, or well explained as it is."""
+    if not group.ranked or not 2 * LEAST_GROUP <= len(group.points) <= MOST_POINTS:
         return ()
     plain = not group.choice.inside.any() and group.ranked[0].kind != "polygon"
     if n_shapes is None and plain and _share_on_shape(group, spread) >= WELL_EXPLAINED:
@@ -317,7 +321,7 @@ def _may_be_one(a: Group, b: Group, spread: float) -> bool:
     """
     import shapely
 
-    if (a.closed and b.closed) or _apart(a, b) > MOST_ACROSS:
+    if (a.closed and b.closed) or len(a.points) + len(b.points) > MOST_POINTS or _apart(a, b) > MOST_ACROSS:
         return False
     points = np.vstack([a.points, b.points])
     hull = shapely.MultiPoint(points).convex_hull
