@@ -60,6 +60,16 @@ def describe(found: Found) -> Message:
     }
 
 
+def count_found(found: Found) -> str:
+    """Return how many shapes were found, and how many of them are not certain.
+
+    >>> count_found(Found())
+    '0 found'
+    """
+    open_ = sum(not one.certain for one in found)
+    return f"{len(found)} found" + (f", {open_} not certain" if open_ else "")
+
+
 def describe_shape(one: Detection) -> Message:
     """Return how a shape is drawn: its outline in stretches that were seen, or are only supposed, and its name.
 

@@ -22,7 +22,7 @@ function build(el) {
   parts.score = made(panel, "p", "score");
   parts.rest = made(panel, "p", "rest");
   parts.time = made(panel, "input", "time", { "type": "range", "min": "0", "value": "0", "aria-label": "Scan" });
-  const controls = made(panel, "div", "others");
+  const controls = made(made(panel, "div", "controls"), "div", "others");
   parts.play = made(controls, "button", "play", { "type": "button" }, "Play");
   parts.speed = made(controls, "button", "speed", { "type": "button" });
   parts.truth = made(controls, "button", "truth", { "type": "button", "aria-pressed": "false" }, "Show the truth");

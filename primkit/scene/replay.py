@@ -31,7 +31,7 @@ from ..table import count
 from ..world import World
 from .finder import Look
 from .given_back import made_before
-from .page import Message, board_and_look, page, ring_of, tell_ranges, tenths
+from .page import Message, board_and_look, count_found, page, ring_of, tell_ranges, tenths
 
 GROWTH = 1.2  # so many times the cells are worth another look
 MOST_RANGE = 32_767  # tenths of a millimetre: ranges go to the page as whole numbers of 16 bits
@@ -136,10 +136,9 @@ class Replay(anywidget.AnyWidget):
         }
 
     def _score(self, look: Look) -> str:
-        found = f"{len(look.found)} found"
         if self.world is None:
-            return found
-        return f"{found} · score {evaluate(look.found, self.world).weighted_accuracy:.2f}"
+            return count_found(look.found)
+        return f"{count_found(look.found)} · score {evaluate(look.found, self.world).weighted_accuracy:.2f}"
 
     def _ranges(self) -> NDArray[np.int16]:
         """Return ranges in tenths of a millimetre, shape (P, B), -1 where nothing was hit."""

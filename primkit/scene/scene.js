@@ -132,6 +132,7 @@ function render({ model, el }) {
 
   const hear = (message, buffers) => {
     silent = clearTimeout(silent);
+    if (known.trouble === SILENT) known.trouble = "";
     clock.hear(message);
     learn(known, message, buffers);
     if (message.say) write(parts.says, message.say);

@@ -34,7 +34,7 @@ from .finder import Beside, Look
 from .given_back import made_before
 from .keys import wheels_for
 from .own_steps import StepError
-from .page import Message, board_and_look, page, ring_of, tell_ranges, tenths
+from .page import Message, board_and_look, count_found, page, ring_of, tell_ranges, tenths
 from .runs import Run, automatic_runs, compare_runs
 from .state import DriveState
 
@@ -212,11 +212,9 @@ class Scene(anywidget.AnyWidget):
     def _score(self) -> str:
         state = self.state
         driven = f"{state.time:.1f} s · {count(state.n_scans, 'scan')}"
-        open_ = sum(not one.certain for one in state.found)  # asked before, where nobody waits: kept since
-        found = f"{len(state.found)} found" + (f", {open_} not certain" if open_ else "")
         age = state.n_scans - state.n_scans_found
         old = f" · shapes {age * state.lidar.period:.1f} s old" if age > FRESH_SCANS and state.looks else ""
-        return f"{driven} · {found} · score {state.score:.2f}{old}"
+        return f"{driven} · {count_found(state.found)} · score {state.score:.2f}{old}"
 
     def _now(self) -> Message:
         """Return what every step changes: pose, ranges, time, score."""
