@@ -136,8 +136,9 @@ def regular(k: int, radius: float, inner: float | None = None) -> Floats:
 
 
 def star(rng: Rng) -> Floats:
+    """Return a star of four to six points; one of three may be nearly a triangle."""
     radius = rng.uniform(0.09, 0.12)
-    return regular(2 * int(rng.integers(3, 6)), radius, rng.uniform(0.4, 0.55) * radius)
+    return regular(2 * int(rng.integers(4, 7)), radius, rng.uniform(0.4, 0.55) * radius)
 
 
 def trapezoid(rng: Rng) -> Floats:
