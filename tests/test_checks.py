@@ -157,7 +157,7 @@ def test_an_error_in_an_edge_case_hides_nothing():
         return x + radius * (np.sin(after) - np.sin(heading)), y - radius * (np.cos(after) - np.cos(heading)), after
 
     answer = pk.checks.drive_step(drive_step)
-    assert answer.says.startswith("right in 162 of 205 cases; raises ZeroDivisionError in 43. For example drive_step(")
+    assert answer.says.startswith("right in 163 of 206 cases; raises ZeroDivisionError in 43. For example drive_step(")
     assert ", `radius = v / w`.\nEvery arc is right. When both wheels turn equally fast" in answer.says
     assert answer.args == ((0.0, 0.0, 0.0), 2.0, 2.0, 1.0)
     assert answer.fault == "w of zero"
