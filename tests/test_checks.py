@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import primkit as pk
-from primkit.checks import judges
+from primkit.checks import calls, judges
 from primkit.checks.answer import VERDICT_COLORS, VERDICT_SIGNS, Answer, Check, Fault
 from tests.answers.styles import STYLES, styled
 from tests.slips import right
@@ -157,7 +157,7 @@ def test_an_error_in_an_edge_case_hides_nothing():
         return x + radius * (np.sin(after) - np.sin(heading)), y - radius * (np.cos(after) - np.cos(heading)), after
 
     answer = pk.checks.drive_step(drive_step)
-    assert answer.says.startswith("right in 162 of 205 cases; raises ZeroDivisionError in 43. For example drive_step(")
+    assert answer.says.startswith("right in 163 of 206 cases; raises ZeroDivisionError in 43. For example drive_step(")
     assert ", `radius = v / w`.\nEvery arc is right. When both wheels turn equally fast" in answer.says
     assert answer.args == ((0.0, 0.0, 0.0), 2.0, 2.0, 1.0)
     assert answer.fault == "w of zero"
@@ -168,6 +168,15 @@ def test_an_error_everywhere_says_what_it_may_come_from():
     assert unknown.says.endswith("After a restart of the kernel, run the cells above again.")
     shapes = pk.checks.assign_points(lambda points, centers: (points - centers[:, :1].T).sum(axis=1))
     assert "which axis is which?" in shapes.says
+
+
+def test_the_line_of_an_error_from_another_process_is_what_that_says():
+    error = ZeroDivisionError("division by zero")
+    assert calls.line_of(error) is None
+    error.where = "line 2: radius = arc(v)\nline 7: return v / w"
+    assert str(calls.line_of(error)) == "line 7, `return v / w`"
+    error.where = "line 7: a\x1b[0m"
+    assert calls.line_of(error) is None
 
 
 def test_a_loop_that_never_ends_is_told_and_the_others_are_not_waited_for():

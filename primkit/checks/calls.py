@@ -24,6 +24,7 @@ from __future__ import annotations
 
 import io
 import linecache
+import re
 import sys
 import sysconfig
 import time
@@ -184,12 +185,18 @@ def is_own(filename: str) -> bool:
 
 
 def line_of(error: BaseException) -> Line | None:
-    """Return the student's last line on the way to an error."""
+    """Return the student's last line on the way to an error, also to one that comes from another process."""
     steps = [step for step in traceback.walk_tb(error.__traceback__) if is_own(step[0].f_code.co_filename)]
-    return line_at(steps[-1][0].f_code.co_filename, steps[-1][1]) if steps else None
+    if steps:
+        return line_at(steps[-1][0].f_code.co_filename, steps[-1][1])
+    told = re.fullmatch(r"line (\d{1,6}): (.*)", str(getattr(error, "where", "")).rpartition("\n")[2])
+    return Line(int(told[1]), _cut(told[2])) if told and told[2].isprintable() else None
 
 
 def line_at(filename: str, number: int) -> Line:
     """Return a line with its text, where Python still knows it."""
-    text = linecache.getline(filename, number).strip()
-    return Line(number, text if len(text) <= 70 else text[:67] + "...")
+    return Line(number, _cut(linecache.getline(filename, number).strip()))
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= 70 else text[:67] + "..."

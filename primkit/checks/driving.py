@@ -65,6 +65,7 @@ def _drives(rng: np.random.Generator) -> Iterator[Args]:
     yield (0.1, 0.2, 0.5), 0.0, 0.0, 1.0
     yield (0.0, 0.0, 0.0), 2.0, 4.0, 1.0
     yield (0.1, -0.2, np.pi / 2), 3.0, 3.0, 2.0
+    yield (0.0, 0.0, 0.0), 2.0, 2.01, 3.0  # nearly straight is not straight
     for n in range(RANDOM_CASES):
         left, right = rng.uniform(-FASTEST, FASTEST, 2).tolist()
         pose = (*rng.uniform(-0.4, 0.4, 2).tolist(), float(rng.uniform(-np.pi, np.pi)))
