@@ -431,7 +431,10 @@ BROKEN = {
     "a task without reference": (stubs, replaced(r"\.yours_or_ours\(", ".other(")),
     "two questions": (poor_quiz, lambda lesson: [replaced(QUESTION, "")(lesson) for _ in range(3)]),
     "an option without feedback": (poor_quiz, replaced(r"</summary>.*</details>", "</summary></details>")),
-    "one option": (poor_quiz, lambda lesson: [replaced(r"<details>", "<p>")(lesson) for _ in range(2)]),
+    "one option": (
+        poor_quiz,
+        lambda lesson: [replaced(r"<details>(?=<summary>(?!One))", "<p>")(lesson) for _ in range(2)],
+    ),
     "no table": (poor_end, replaced(r"^\|[-| ]+\|$", "")),
     "one level": (poor_end, replaced(r"\*\*Level 2", "Then")),
     "nothing to read": (poor_end, replaced(r"^## Further reading[\s\S]*", "## Further reading\n\n* One book.")),
