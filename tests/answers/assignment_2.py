@@ -409,7 +409,7 @@ ANSWERS = {
             "wrong side": (fog_nearest, 1, "hits behind the wall"),
             "never none": (fog_never_none, 3, "a line from one point"),
             "two farthest hits": (fog_two_farthest, 2, "line through the farthest hits"),
-            "farthest pair": (fog_farthest_pair, 0, "raises ValueError"),
+            "farthest pair": (fog_farthest_pair, 0, "line through the farthest hits"),
         },
     },
     "corridor": {
