@@ -29,7 +29,8 @@ from numpy.typing import NDArray
 from .arguments import Floats, Ints
 from .found import Found
 from .measure import CELL, Detection, Frame, Other, Thing, Wall, as_detection
-from .robust.choice import CERTAIN, Choice
+from .robust.choice import Choice
+from .robust.evidence import CERTAIN
 from .robust.outlines import LEAST_SIDE, Outlines
 from .robust.scatter import SIGMAS
 from .shapes import Polygon, Shape

@@ -21,8 +21,9 @@ from numpy.typing import ArrayLike
 
 from .arguments import Floats, Ints, as_points, as_positive
 from .robust.candidates import candidates
-from .robust.choice import CERTAIN, Choice
+from .robust.choice import Choice
 from .robust.deviations import Certainty
+from .robust.evidence import CERTAIN
 from .robust.scatter import LEAST_SPREAD, noise_of
 from .seen import seen_shares
 from .shapes import Circle, Kind, Polygon, Shape

@@ -33,7 +33,19 @@ from ..lines import Line, fit_line
 from ..seen import REACH
 from ..shapes import KINDS, Circle
 from .cuts import UNSEEN, Cut, best_cuts, by_bearing, chords, frames, in_company, outlines_with
-from .evidence import NAMELESS_COST, OF_CIRCLE, OF_FREE_SIDES, OF_SQUARE, OF_WALL, Candidate, Figure, judged, price
+from .evidence import (
+    CERTAIN,
+    NAMELESS_COST,
+    NEARLY_ALL,
+    OF_CIRCLE,
+    OF_FREE_SIDES,
+    OF_SQUARE,
+    OF_WALL,
+    Candidate,
+    Figure,
+    judged,
+    price,
+)
 from .free import free_outline
 from .lack_of_fit import lack_of_fit
 from .outlines import QUARTERS, Outlines, joined
@@ -53,8 +65,6 @@ WIDER = 0.005  # m: guesses are judged with a longer reach than fits, because th
 BLURRED = 0.002
 # A candidate that is this much worse (in cost) before the last polish is not going to win by it.
 CONTENDER = 40.0
-AHEAD = 10.0  # by so much a shape must be ahead of a bound: very strong evidence (Kass and Raftery, 1995)
-FITS, NEARLY_ALL = 10.0, 0.9  # lack of fit down to which a shape fits; share of the points, and of each side
 LOOKS, NEARLY_ALL_POINTS = 3, 0.97  # strays lead cuts astray: once more without them, until so many points lie on it
 BEGAN_BADLY = 25.0  # a fit that costs so much more than it could
 RIVAL = 200.0  # and no rival comes near any more
@@ -123,7 +133,7 @@ def _fits(points: Floats, spread: float, thorough: bool, kinds: Sequence[str]) -
         ways = Ways.through(kept, spread)
         fits: dict[Way, tuple[float, Figure]] = {}
         for way, least in sorted(ways.least.items(), key=lambda item: item[1]):
-            if least > min((cost for cost, _ in fits.values()), default=np.inf) + AHEAD and not thorough:
+            if least > min((cost for cost, _ in fits.values()), default=np.inf) + CERTAIN and not thorough:
                 break
             figure = ways.fitted(*way) if KIND_OF[way] in kinds else None
             if figure is not None:
@@ -286,7 +296,7 @@ def _explains(points: Floats, best: Candidate, spread: float) -> bool:
     """Tell whether nearly all points lie on the best explanation, all around, and without any order in their misses."""
     if isinstance(best.figure, Line) or min(best.seen) < NEARLY_ALL or best.n_on < NEARLY_ALL * len(points):
         return False
-    return lack_of_fit(points, best.figure, spread, square=best.square) >= FITS
+    return lack_of_fit(points, best.figure, spread, square=best.square) >= CERTAIN
 
 
 def polished(points: Floats, rough: Candidate, spread: float, *, soft: bool = True) -> Candidate | None:

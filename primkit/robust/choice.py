@@ -19,13 +19,11 @@ from ..lines import Line
 from ..shapes import KINDS, Circle, Shape
 from .candidates import candidates, free_candidate
 from .deviations import Certainty, certainty
-from .evidence import Candidate
+from .evidence import CERTAIN, NEARLY_ALL, Candidate
 from .lack_of_fit import lack_of_fit
 from .outlines import LEAST_SIDE
 from .scatter import SIGMAS, depth_of, noise_of
 
-CERTAIN = 10.0  # a margin of so much is very strong evidence (Kass and Raftery, 1995)
-MOST_ON_IT = 0.9  # share of the points; more off it may be something else
 MOST_SEEN = 0.75  # share of each side; behind more there may be something else
 
 
@@ -136,7 +134,7 @@ class Choice:
         large = best.shape.dimensions[-1] if isinstance(best.shape, Circle) else best.shape.sides.min()
         return bool(
             min(self.lead, self.fit) >= CERTAIN
-            and self.on_it.mean() >= MOST_ON_IT
+            and self.on_it.mean() >= NEARLY_ALL
             and not self.inside.any()
             and min(best.seen) >= MOST_SEEN
             and large >= LEAST_SIDE

@@ -41,7 +41,8 @@ NAMELESS_COST, NAMELESS_PART_COST = 8.0, 20.0
 # No beam gets inside: the cost of each point there beyond those that lie outside, which are strays; more are not seen
 # through a mouth.
 INSIDE_COST, MOST_INSIDE = 10.0, 5
-WHOLE = 0.9  # share of each side
+# So much ahead is very strong evidence (Kass and Raftery, 1995); so large a share of points or of a side is nearly all.
+CERTAIN, NEARLY_ALL = 10.0, 0.9
 
 # How uncertain N even points leave each fitted number, as a variance in units of spread^2 / N: a circle's centre and
 # radius; a side's offset and its angle (as a length, at the side's ends); a rectangle's four offsets and one angle; a
@@ -138,7 +139,7 @@ def judged(points: Floats, figure: Figure, spread: float, *, square: bool = Fals
     cost = _cost(log_likelihood, fitted, len(points), spread) + _length_cost(on_it, length)
     cost += UNSEEN_COST * float(lengths.sum() - length) + INSIDE_COST * _inside(distance, spread)
     named = isinstance(figure, Circle) or square or (figure.kind != "polygon" and len(lengths) != 4)
-    nameless = 0.0 if named else NAMELESS_COST if min(seen) >= WHOLE else NAMELESS_PART_COST
+    nameless = 0.0 if named else NAMELESS_COST if min(seen) >= NEARLY_ALL else NAMELESS_PART_COST
     return Candidate(figure, square, cost + nameless, length, on_it, seen, nameless)
 
 

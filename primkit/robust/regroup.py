@@ -34,8 +34,8 @@ from ..seen import seen_shares
 from ..segmentation import LEAST_GROUP, LINK, kmeans, link
 from ..shapes import KINDS, Polygon, Shape
 from .candidates import MOST_POINTS, candidates, explained_again
-from .choice import CERTAIN, Choice
-from .evidence import Candidate, joint_cost
+from .choice import Choice
+from .evidence import CERTAIN, NEARLY_ALL, Candidate, joint_cost
 from .scatter import NOWHERE, SIGMAS
 
 Explain = Callable[[Floats], "Group"]
@@ -43,8 +43,6 @@ Explain = Callable[[Floats], "Group"]
 # A second opinion explains at most so many points, and each try counts as so many more: about a second's work.
 MOST_WORK, WORK_OF_A_TRY = 50_000, 250
 
-CLOSED = 0.9  # an outline seen on nine tenths of its length is no piece of another
-WELL_EXPLAINED = 0.9  # share of a group's points on its shape; with fewer, the group may be two
 MOST_ACROSS = 0.45  # m: the paper's largest rectangle is 0.424 m from corner to corner; wider pieces are of two shapes
 HULL_SPREADS, HULL_CELLS = 6.0, 0.002  # the hull runs along the outermost points: others lie up to so much inside [m]
 FINER_LINKS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0)  # a group is cut where it falls apart first, linked so much more finely
@@ -82,9 +80,9 @@ class Group:
         if shape is None:
             return False
         lengths = shape.sides if isinstance(shape, Polygon) else [shape.perimeter]
-        if np.average(self.ranked[0].seen, weights=lengths) >= CLOSED:  # by those points alone that lie on it
+        if np.average(self.ranked[0].seen, weights=lengths) >= NEARLY_ALL:  # by those points alone that lie on it
             return True
-        return bool(np.average(seen_shares(shape, self.points), weights=lengths) >= CLOSED)
+        return bool(np.average(seen_shares(shape, self.points), weights=lengths) >= NEARLY_ALL)
 
 
 @dataclass(frozen=True)
@@ -249,7 +247,7 @@ def _halves(group: Group, spread: float, n_shapes: int | None, explain: Explain)
     if not group.ranked or not 2 * LEAST_GROUP <= len(group.points) <= MOST_POINTS:
         return ()
     plain = not group.choice.inside.any() and group.ranked[0].kind != "polygon"
-    if n_shapes is None and plain and _share_on_shape(group, spread) >= WELL_EXPLAINED:
+    if n_shapes is None and plain and _share_on_shape(group, spread) >= NEARLY_ALL:
         return ()
     ways = [parts for side in _sides(group, spread) if (parts := _parts(group.points, side, explain))]
     best = min(ways, key=cost_of, default=())
