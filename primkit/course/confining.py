@@ -58,6 +58,8 @@ def _walls(library: Path, hidden: Sequence[Path] = ()) -> list[str]:
         words += ["--size", str(TEMPORARY_BYTES), "--tmpfs", place]
     for path in _readable(library):
         words += ["--ro-bind", str(path), str(path)]
+    if library != PACKAGE and DATA.is_dir():  # a copy looks for it beside itself
+        words += ["--ro-bind", str(DATA), str(library.parent / DATA.name)]
     for path in hidden if library == PACKAGE else (*hidden, PACKAGE):
         if any(path.is_relative_to(seen) for seen in _readable(library)):
             words += ["--tmpfs", str(path)]
