@@ -12,7 +12,7 @@ import nbformat
 import psutil
 import pytest
 
-from primkit.course.confining import bubblewrap_works
+from primkit.course.confining import bubblewrap_works, processes_are_limited
 from primkit.course.course import new_course
 from primkit.course.handed_in import tree_hash
 from tests.attacks import ALONE, ATTACKS, FORGERIES, forgeries
@@ -24,6 +24,9 @@ if not bubblewrap_works():
     if os.environ.get("PRIMKIT_WALLS") == "required":
         raise RuntimeError("bubblewrap is required, and does not work here")
     pytest.skip("bubblewrap does not work here", allow_module_level=True)
+
+if not processes_are_limited():  # then it would take down the machine, and grading says that it is uncounted
+    ALONE.pop("a fork bomb")
 
 READY = """\
 import signal
@@ -241,7 +244,7 @@ TRACES = {
 }
 
 
-@pytest.mark.parametrize("attack", TRACES)
+@pytest.mark.parametrize("attack", [attack for attack in TRACES if attack in TASK_OF])
 def test_what_leaves_a_trace_is_told(graded, attack):
     task = TASK_OF[attack]
     told, names = noted(graded), []

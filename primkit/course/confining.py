@@ -15,9 +15,11 @@ import shutil
 import site
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
+from uuid import uuid4
 
 PACKAGE = Path(__file__).resolve().parents[1]
 DATA = PACKAGE.parent / "data"  # in a clone; a wheel holds it inside
@@ -27,6 +29,8 @@ SYSTEM_SETTINGS = ("ld.so.cache", "ld.so.conf", "ld.so.conf.d", "alternatives", 
 TEMPORARY_BYTES = 2**28  # that /tmp and /dev/shm may hold, each
 BY_OTHERS = "PRIMKIT_CONFINED_BY"  # a variable that names what confines the whole grading: "a container"
 UNPROTECTED = "unprotected: no wall stands between a student's code and your files"
+UNCOUNTED = "uncounted: root may start any number of processes; grade as another user, or allow control groups"
+GROUPS = ("/sys/fs/cgroup/pids", "/sys/fs/cgroup")  # control groups of processes, version 1 and version 2
 
 
 @cache
@@ -43,6 +47,35 @@ def confined_by() -> str:
     if bubblewrap_works():
         return "bubblewrap"
     return os.environ.get(BY_OTHERS, "")
+
+
+def limit_processes(pids: Iterable[int], most: int) -> Path | None:
+    """Let processes and all that they start be at most so many; return their control group, None without one.
+
+    For everybody but root the system's own limit does the same.
+    """
+    for place in map(Path, GROUPS):
+        group = place / f"primkit-{uuid4().hex}"
+        with suppress(OSError):
+            group.mkdir()
+            try:
+                (group / "pids.max").write_text(str(most))
+                for pid in pids:
+                    (group / "cgroup.procs").write_text(str(pid))
+                return group
+            except OSError:
+                group.rmdir()
+    return None
+
+
+@cache
+def processes_are_limited() -> bool:
+    """Tell whether there can be no more processes of a student's than allowed."""
+    if not hasattr(os, "geteuid") or os.geteuid() != 0:
+        return True
+    if (group := limit_processes((), 1)) is not None:
+        group.rmdir()
+    return group is not None
 
 
 def walls(scratch: Path, library: Path, hidden: Sequence[Path] = ()) -> list[str]:

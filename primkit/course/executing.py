@@ -34,7 +34,7 @@ from traitlets import Integer
 
 from ..formats import save_scans
 from ..world import World
-from .confining import UNPROTECTED, confined_by
+from .confining import UNCOUNTED, UNPROTECTED, confined_by, processes_are_limited
 from .course import SCANS, Course
 from .grading.judging import Judging
 from .grading.own_board import board_of
@@ -71,6 +71,8 @@ class CarefulExecute(OwnKernel):
         self.twins = len(self.judging.graded) if self.judging else 0
         if not confined_by():
             self.faults.append({"cell": "-", "name": "unprotected", "says": UNPROTECTED})
+        if not processes_are_limited():
+            self.faults.append({"cell": "-", "name": "uncounted", "says": UNCOUNTED})
         with tempfile.TemporaryDirectory(prefix="primkit-", ignore_cleanup_errors=True) as scratch:
             self.prepare(Path(scratch), self.judging.without if self.judging else ())
             self.given, self.work = Path(scratch, "given"), Path(scratch, "work")

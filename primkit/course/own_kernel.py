@@ -28,7 +28,7 @@ from nbclient.util import ensure_async
 from nbgrader.preprocessors import Execute
 from traitlets import Integer, Unicode
 
-from .confining import DATA, OWN_FOLDERS, PACKAGE, bubblewrap_works, walls
+from .confining import DATA, OWN_FOLDERS, PACKAGE, bubblewrap_works, limit_processes, walls
 from .course import ASSIGNMENTS
 
 # What a kernel needs of the teacher's environment; nothing else is handed on, for there may be passwords in it.
@@ -74,6 +74,7 @@ class OwnKernel(Execute):  # type: ignore[misc]
         self.scratch = scratch
         self.numbers = count()  # of kernels
         self.seen: set[psutil.Process] = set()  # of the kernels, and of what they have started
+        self.groups: list[Path] = []  # of the kernels' processes
         self.confined = bubblewrap_works()
         for name in OWN_FOLDERS:
             (scratch / name).mkdir(exist_ok=True)
@@ -109,11 +110,15 @@ class OwnKernel(Execute):  # type: ignore[misc]
     def start_new_kernel_client(self) -> Any:
         """Prepare the kernel before the first cell runs."""
         client = super().start_new_kernel_client()
+        most = 4 * MOST_PROCESSES + self.twins
+        if hasattr(os, "geteuid") and os.geteuid() == 0:  # whom the system's own limit does not hold
+            group = limit_processes((process.pid for process in self.processes()), most)
+            self.groups += [group] if group is not None else []
         limits = {
             "RLIMIT_AS": self.megabytes * MEGABYTE,
             "RLIMIT_CORE": 0,
             "RLIMIT_FSIZE": FILE_MEGABYTES * MEGABYTE,
-            "RLIMIT_NPROC": 4 * MOST_PROCESSES + self.twins + _own_threads(),
+            "RLIMIT_NPROC": most + _own_threads(),
         }
         self.run_silently(PREPARE.format(limits=limits), client)
         return client
@@ -183,6 +188,9 @@ class OwnKernel(Execute):  # type: ignore[misc]
         for process in self.seen:
             with suppress(psutil.Error):
                 process.kill()  # only while it is the one that was seen
+        for group in self.groups:
+            with suppress(OSError):  # until its last process has gone; then the next time
+                group.rmdir()
 
 
 def _environment(home: Path, library: Path) -> dict[str, str]:
