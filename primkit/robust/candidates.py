@@ -212,7 +212,8 @@ class Ways:
                 fit = _circle_through(self.points)
             elif (starts := outlines_with(self.cuts, self.spans, k)) is not None:
                 begin = Outlines(starts.angles[:, :1] + QUARTERS, starts.offsets) if square else starts
-                fit = _refined(self.points, begin, self.spread, square=square)
+                as_cut = len(begin) == 1 and not square and self.spread < BLURRED and begin.sound()[0]
+                fit = begin if as_cut else _refined(self.points, begin, self.spread, square=square)
                 if fit is None or self.cost(fit, (k, square)) > self.least[k, square] + BEGAN_BADLY:
                     begin = frames(self.points, starts) if square else self._one_side_more(k)
                     begin = begin if fit is None else joined(fit, begin)
@@ -245,11 +246,13 @@ def _circle_through(points: Floats) -> Circle | None:
 def _refined(points: Floats, starts: Outlines, spread: float, *, square: bool) -> Outlines | None:
     """Refine the starts that lie closest to the points, and return the best one; None without a sound one."""
     reach = SIGMAS * spread
-    near = starts[np.argsort(truncated_cost(points, starts, reach + WIDER), kind="stable")[:STARTS_KEPT]]
+    near = starts
+    if len(starts) > 1:
+        near = starts[np.argsort(truncated_cost(points, starts, reach + WIDER), kind="stable")[:STARTS_KEPT]]
     fits = refine_hard(points, near, reach, square=square)
     fits = fits[fits.sound()]
     if len(fits):
-        best = int(np.argmin(truncated_cost(points, fits, reach)))
+        best = int(np.argmin(truncated_cost(points, fits, reach))) if len(fits) > 1 else 0
         return fits[best : best + 1]
     sound = near[near.sound()]
     if spread < BLURRED or len(sound) == 0:
