@@ -8,7 +8,7 @@ import pytest
 import primkit as pk
 from primkit.measure import measure_shape
 from primkit.robust.deviations import certainty, sides_seen
-from primkit.robust.scatter import CELL_STD, MEAN_ACROSS, spread_across
+from primkit.robust.scatter import CELL_STD, LEAST_SPREAD, MEAN_ACROSS, spread_across
 from tests.test_outlines import outline_of
 
 TRIANGLE = pk.Polygon([(-0.08, -0.05), (0.08, -0.05), (0.0, 0.09)])
@@ -47,6 +47,18 @@ def test_a_circles_deviation_has_a_closed_form():
     sure = certainty(circle, points, 0.002, noise_std=0.002 / MEAN_ACROSS**0.5)
     assert sure.dimension_std[0] == pytest.approx(0.002 / np.sqrt(1000), rel=0.1)
     assert sure.center_std == pytest.approx([0.002 * np.sqrt(2 / 1000)] * 2, rel=0.1)
+
+
+def test_the_errors_of_cells_even_out_where_all_of_them_are_hit():
+    """Errors over stated deviations, of circles on all the cells that they cross: counted as random they were 0.66."""
+    rng, errors = np.random.default_rng(5), []
+    for _ in range(150):
+        ring, grid = pk.Circle(rng.uniform(-0.01, 0.01, 2), rng.uniform(0.05, 0.07)), pk.Grid()
+        grid.add(ring.outline(5000))
+        fit = pk.fit_circle(grid.points())
+        sure = certainty(fit, grid.points(), LEAST_SPREAD)
+        errors += [*((fit.center - ring.center) / sure.center_std), (fit.radius - ring.radius) / sure.dimension_std[0]]
+    assert 0.73 < np.std(errors) < 1.0
 
 
 def test_a_side_along_the_cells_stays_unsure_however_many_points_there_are():
