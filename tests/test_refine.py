@@ -178,3 +178,13 @@ def test_one_side_more_finds_the_short_side_that_was_missed():
         corners = [o.corners() for o in (refined[i : i + 1] for i in np.flatnonzero(refined.sound()))]
         gaps = [np.abs(np.sort(c[0], axis=0) - np.sort(truth.corners()[0], axis=0)).max() for c in corners]
         assert min(gaps) < 0.001, missed
+
+
+@pytest.mark.parametrize("spread", [0.0005, 0.003])
+def test_an_outline_that_would_stop_being_sound_stays_as_it_was(spread):
+    """A fifth side that cuts a corner off a square, where no corner is cut off, turns away."""
+    square = pk.Polygon([(-0.05, -0.05), (0.05, -0.05), (0.05, 0.05), (-0.05, 0.05)])
+    angles = np.array([[-np.pi / 2, 0, np.pi / 4, np.pi / 2, np.pi]])
+    guess = Outlines(angles, np.array([[0.05, 0.05, 0.058, 0.05, 0.05]]))
+    assert guess.sound().all()
+    assert refine_soft(square.outline(200), guess, spread).sound().all()

@@ -138,3 +138,23 @@ def test_a_wall_is_not_taken_for_two_things(monkeypatch):
     monkeypatch.setattr(regroup, "kmeans", lambda *a, **k: cut.append(1) or real(*a, **k))
     assert regroup.regrouped([group], LEAST_SPREAD)[0] == [group]
     assert cut == []
+
+
+def test_a_half_is_certain_only_beside_a_certain_half():
+    """Where it is open what the other half is, so is where the group is cut."""
+    arc = CIRCLE.outline(200)
+    together = np.vstack([RECTANGLE.outline(300), arc[arc[:, 0] > CIRCLE.center[0]]])
+    groups, margins = regroup.regrouped(groups_of(together), LEAST_SPREAD)
+    of = {group.shape.kind: (group.choice.certain, margin) for group, margin in zip(groups, margins, strict=True)}
+    assert sorted(certain for certain, _ in of.values()) == [False, True]
+    assert of["rectangle"][1] <= 0
+
+
+def test_where_many_points_lie_beside_it_no_shape_is_certain():
+    """They may be something else."""
+    rng, outline = np.random.default_rng(0), RECTANGLE.outline(300)
+    assert explained(outline, LEAST_SPREAD).choice.certain
+    beside = RECTANGLE.outline(60) * 1.15 + rng.uniform(-0.004, 0.004, (60, 2))
+    choice = explained(np.vstack([outline, beside]), LEAST_SPREAD).choice
+    assert choice.shape.kind == "rectangle"
+    assert not choice.certain

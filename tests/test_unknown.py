@@ -5,7 +5,7 @@ import pytest
 
 import primkit as pk
 from primkit.robust.free import _pruned, free_outline, path_through
-from primkit.robust.lack_of_fit import lack_of_fit, sharpness
+from primkit.robust.lack_of_fit import lack_of_fit, residuals_along, sharpness
 from primkit.robust.outlines import Outlines
 from primkit.robust.scatter import LEAST_SPREAD, spread_across
 from tests.benchmarks.open_world.boards import seen_on
@@ -160,6 +160,16 @@ def test_noise_alone_lets_hardly_any_outline_bend():
         for _ in range(300)
     ]
     assert np.mean(np.array(fits) >= 10) >= 0.98
+
+
+def test_points_that_may_be_of_either_side_tell_of_no_bend():
+    """Around a corner, noise has moved points across both sides: their residuals have an order without any bend."""
+    hexagon, spread = pk.Polygon(regular(6, 0.09)), 0.002
+    points = hexagon.outline(240)
+    second = np.sort(np.abs(points @ hexagon.normals.T - (hexagon.normals * hexagon.vertices).sum(axis=1)))[:, 1]
+    told = residuals_along(points, outline_of(hexagon), spread)
+    assert 150 < len(told) < 240
+    assert len(told) <= np.count_nonzero(second > 1.5 * spread)
 
 
 def test_corners_are_sharp_and_bends_are_not():
