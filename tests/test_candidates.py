@@ -222,3 +222,11 @@ def test_how_sure_numbers_are_is_worked_out_when_it_is_asked_for_and_only_once(m
     assert len(found.center_std) == 2
     assert asked == [1]
     assert pickle.loads(pickle.dumps(found)).dimension_std == std
+
+
+@pytest.mark.parametrize(("degrees", "told"), [(48, False), (55, False), (70, True)])
+def test_no_arc_below_sixty_degrees_is_a_circle(degrees, told):
+    """What is seen of it looks longer, by as much at each end as a point is near to."""
+    bearing = np.radians(np.linspace(0, degrees, 60))
+    arc = 0.08 * np.column_stack([np.cos(bearing), np.sin(bearing)])
+    assert ("circle" in [one.kind for one in candidates(arc, LEAST_SPREAD)]) == told

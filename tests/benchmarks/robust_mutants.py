@@ -136,7 +136,7 @@ MUTANTS = (
     ),
     # --- choice ---
     Mutant("no point deep inside", "robust/choice.py", "and not self.inside.any()", "", CHOICE),
-    Mutant("nearly all points lie on it", "robust/choice.py", "and self.on_it.mean() >= MOST_ON_IT", "", CHOICE),
+    Mutant("nearly all points lie on it", "robust/choice.py", "and self.on_it.mean() >= NEARLY_ALL", "", CHOICE),
     Mutant("nearly all of it was seen", "robust/choice.py", "and min(best.seen) >= MOST_SEEN", "", CHOICE),
     Mutant("so large that its kind can show", "robust/choice.py", "and large >= LEAST_SIDE", "", CHOICE),
     # --- lack of fit ---
