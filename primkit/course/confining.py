@@ -30,7 +30,7 @@ TEMPORARY_BYTES = 2**28  # that /tmp and /dev/shm may hold, each
 BY_OTHERS = "PRIMKIT_CONFINED_BY"  # a variable that names what confines the whole grading: "a container"
 UNPROTECTED = "unprotected: no wall stands between a student's code and your files"
 UNCOUNTED = "uncounted: root may start any number of processes; grade as another user, or allow control groups"
-GROUPS = ("/sys/fs/cgroup/pids", "/sys/fs/cgroup")  # control groups of processes, version 1 and version 2
+CONTROL_GROUPS = ("/sys/fs/cgroup/pids", "/sys/fs/cgroup")  # control groups of processes, version 1 and version 2
 
 
 @cache
@@ -54,7 +54,7 @@ def limit_processes(pids: Iterable[int], most: int) -> Path | None:
 
     For everybody but root the system's own limit does the same.
     """
-    for place in map(Path, GROUPS):
+    for place in map(Path, CONTROL_GROUPS):
         group = place / f"primkit-{uuid4().hex}"
         with suppress(OSError):
             group.mkdir()

@@ -138,4 +138,5 @@ class Choice:
             and not self.inside.any()
             and min(best.seen) >= MOST_SEEN
             and large >= LEAST_SIDE
+            and self.margin >= CERTAIN  # the last, for it fits the rivals that were not
         )
