@@ -48,6 +48,9 @@ scene = pk.drive_scene(world, noisy, rng=12).state
 for _ in range(20):
     scene.step((6.0, 5.0))
 scene.finish()  # what the thread beside the drive has found by now is a matter of time
+mapper = pk.Mapper(rng=14)
+for half in (scans[:20], scans[20:]):
+    mapper.add(half)
 film = pk.replay(pk.Drive(scans, np.zeros((len(scans.poses), 2))), rng=13).film
 results = {
     "random_world": [world, pk.random_world(5, style="free", rng=3)],
@@ -66,6 +69,7 @@ results = {
     "scripted_route": [route.start, route.wheels],
     "drive_scene": [scene.grid.points(), scene.found],
     "replay": [film.cells, *(look.found for look in film.looks)],
+    "Mapper": mapper.found,
     "find_shapes": [pk.find_shapes(points, rng=9), pk.find_shapes(points, 3, settings=few, rng=9)],
 }
 for name, value in results.items():
