@@ -469,9 +469,12 @@ def test_r16_what_outlives_nbgrader_does_not_keep_it_waiting(tmp_path, monkeypat
 
     monkeypatch.setattr(running, "_environment", lambda _course: {**os.environ, "PYTHONPATH": str(tmp_path)})
     code = (
-        "import subprocess, sys; print('said'); subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(30)'])"
+        "import subprocess, sys; print('said'); subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(30)'])\n"
+        "class NbGraderApp:\n    launch_instance = clear_instance = staticmethod(lambda *words: None)"
     )
-    (tmp_path / "nbgrader.py").write_text(code)
+    (tmp_path / "nbgrader" / "apps").mkdir(parents=True)
+    for name, source in {"__init__": "", "apps/__init__": "", "apps/nbgraderapp": code}.items():
+        (tmp_path / "nbgrader" / f"{name}.py").write_text(source)
     start = time.monotonic()
     done = running.nbgrader(Course(tmp_path), "autograde")
     assert (done.code, done.log.strip()) == (0, "said")

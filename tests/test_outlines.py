@@ -50,7 +50,8 @@ UNSOUND = {
     "all normals on one side: the outline is open": ([0.0, 0.4, 0.8, 1.2], [0.1] * 4),
     "two parallel neighbours": ([0.0, 0.0, 2.0, 4.0], [0.1, 0.1, 0.1, 0.1]),
     "a side cut away by its neighbours": (SQUARE, [0.1, 0.1, -0.2, 0.1]),
-    "a side of 1 cm": (SQUARE, [0.005, 0.1, 0.005, 0.1]),
+    "a plank of 1 mm": (SQUARE, [0.0005, 0.1, 0.0005, 0.1]),
+    "a corner cut off by 1 cm": (np.radians([0, 45, 90, 180, 270]), [0.1, 0.1364, 0.1, 0.1, 0.1]),
     "a corner that bends by 10 degrees": (np.radians([0, 10, 130, 250]), [0.1] * 4),
     "twice round": (np.radians([0, 144, 288, 72, 216]), [0.1] * 5),
 }

@@ -167,6 +167,8 @@ def draw_legend(ax: Axes, handles: Sequence[Artist]) -> None:
 
 
 def _fit_legend(ax: Axes, legend: Legend) -> None:
+    if legend is not ax.get_legend():  # taken away since
+        return
     legend.set_visible(width_of(ax) >= LEGEND_WIDTH)
     for size in LEGEND_LETTERS:
         for text in legend.get_texts():
