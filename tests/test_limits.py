@@ -469,7 +469,8 @@ def test_r16_what_outlives_nbgrader_does_not_keep_it_waiting(tmp_path, monkeypat
 
     monkeypatch.setattr(running, "_environment", lambda _course: {**os.environ, "PYTHONPATH": str(tmp_path)})
     code = (
-        "import subprocess, sys; print('said'); subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(30)'])\n"
+        "import subprocess, sys\nprint('said')\n"
+        "subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(30)'])\n"
         "class NbGraderApp:\n    launch_instance = clear_instance = staticmethod(lambda *words: None)"
     )
     (tmp_path / "nbgrader" / "apps").mkdir(parents=True)
