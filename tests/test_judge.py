@@ -376,8 +376,8 @@ def check_halves(course):
 
 
 def test_each_graded_cell_is_judged_as_the_notebook_was_there(course, monkeypatch):
-    monkeypatch.setattr("primkit.course.grading.judging.CELL_SECONDS", 1.0)
-    monkeypatch.setattr("primkit.course.grading.task.PART_SECONDS", 1.0)
+    monkeypatch.setattr("primkit.course.grading.judging.CELL_SECONDS", 3.0)
+    monkeypatch.setattr("primkit.course.grading.task.PART_SECONDS", 3.0)
     cells, notebook = check_halves(course)
     assert notebook.cells[-1].outputs[0].text == "the end 0\n"  # no case came to a cell of the notebook
     assert notebook.metadata.primkit.confined == confining.confined_by()
@@ -385,7 +385,7 @@ def test_each_graded_cell_is_judged_as_the_notebook_was_there(course, monkeypatc
 
 
 def test_without_fork_the_kernel_itself_answers(course, monkeypatch):
-    monkeypatch.setattr("primkit.course.grading.judging.CELL_SECONDS", 1.0)
+    monkeypatch.setattr("primkit.course.grading.judging.CELL_SECONDS", 3.0)
     monkeypatch.setattr(executing, "FORKS", False)
     points, _ = graded(course, "halves", **ANSWERS_OF)
     reached = {task: points[f"{task}-visible"][0] + points[f"{task}-hidden"][0] for task in ANSWERS_OF}
