@@ -213,6 +213,7 @@ class CarefulExecute(OwnKernel):
         traceback = [f"\x1b[0;31m{name}\x1b[0m: {sentence}"]
         cell.outputs = [
             *(output for output in cell.outputs if output.output_type != "execute_result"),
+            # nbformat gives its functions no types
             new_output("error", ename=name, evalue=sentence, traceback=traceback),  # type: ignore[no-untyped-call]
         ]
         self.failed[index] = name, f"{name}: {sentence}"

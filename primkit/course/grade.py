@@ -107,7 +107,7 @@ def _alone(course: Course, name: str) -> Iterator[None]:
             except ImportError:
                 import msvcrt  # Windows
 
-                msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined]
+                msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined]  # only there
         except OSError:
             raise ValueError(f"{name} is being graded by another command: wait until that has ended") from None
         yield

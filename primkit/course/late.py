@@ -82,7 +82,7 @@ def _moment(value: Any, whose: str) -> datetime:
     return value.astimezone(UTC)  # without a zone, by this computer's clock
 
 
-class LateRule(LateSubmissionPlugin):  # type: ignore[misc]
+class LateRule(LateSubmissionPlugin):  # type: ignore[misc]  # nbgrader has no types
     """The course's rule, in the place of nbgrader's own: it grades, ``course.toml`` says how."""
 
     def late_submission_penalty(self, student_id: str, score: float, total_seconds_late: float) -> float | None:

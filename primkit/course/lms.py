@@ -29,7 +29,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from dateutil.parser import parse  # type: ignore[import-untyped]
+from dateutil.parser import parse  # type: ignore[import-untyped]  # it has none
 
 from .students import read_table
 

@@ -149,4 +149,4 @@ def _error(name: str, sentence: str, where: str) -> Any:
 
 
 def _output(kind: str, **content: Any) -> Any:
-    return new_output(kind, **content)  # type: ignore[no-untyped-call]
+    return new_output(kind, **content)  # type: ignore[no-untyped-call]  # nbformat gives it no types
