@@ -20,7 +20,7 @@ Out: ``Found``: the shapes, and beside them ``walls``, ``others`` and ``strays``
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -32,6 +32,7 @@ from .measure import CELL, Detection, Frame, Other, Thing, Wall, as_detection
 from .robust.choice import Choice
 from .robust.evidence import CERTAIN
 from .robust.outlines import LEAST_SIDE, Outlines
+from .robust.regroup import MOST_ACROSS
 from .robust.scatter import SIGMAS
 from .shapes import Polygon, Shape
 
@@ -117,20 +118,31 @@ def things_of(choice: Choice, count_margin: float, account: Account) -> list[Thi
     found = as_detection(choice)
     if found is None or account.by_chance(found.points):
         return []
-    if isinstance(best.figure, Outlines) and _is_room(choice, found.shape):
-        return list(_walls_around(choice, best.figure))
+    if (room := _room_of(choice, found.shape)) is not None:
+        return list(_walls_around(choice, room))
     if _is_other(choice, found):
         outline = found.shape.vertices if isinstance(found.shape, Polygon) else found.shape.outline(36)
         return [Other(choice.points, outline)]
     return [replace(found, count_margin=count_margin)]
 
 
-def _is_room(choice: Choice, shape: Shape) -> bool:
-    """Tell whether an outline is larger than any shape, with room to stand in it, and fits most of the points."""
+def walls_among(choices: Sequence[Choice], n_shapes: int) -> list[Choice]:
+    """Return those groups of points that are walls or strays; while shapes lack, what may be a side is none of them."""
+    found = [as_detection(choice) for choice in choices]
+    no_shapes = [c for c, one in zip(choices, found, strict=True) if one is None or _room_of(c, one.shape) is not None]
+    if len(choices) - len(no_shapes) >= n_shapes:
+        return no_shapes
+    return [choice for choice in no_shapes if np.hypot(*np.ptp(choice.points, axis=0)) > MOST_ACROSS]
+
+
+def _room_of(choice: Choice, shape: Shape) -> Outlines | None:
+    """Return an outline that is larger than any shape, with room to stand in it, and fits most of the points."""
+    figure = choice.ranked[0].figure
     corners = shape.vertices if isinstance(shape, Polygon) else shape.outline(36)
     across = float(np.hypot(*(corners[:, None] - corners).T).max())
     wide = across > ROOM_ACROSS and shape.area > ROOM_WIDTH * across
-    return bool(wide and choice.on_it.mean() >= MOST_ON_WALLS and choice.fit >= CERTAIN)
+    is_room = wide and choice.on_it.mean() >= MOST_ON_WALLS and choice.fit >= CERTAIN
+    return figure if is_room and isinstance(figure, Outlines) else None
 
 
 def _is_other(choice: Choice, found: Detection) -> bool:

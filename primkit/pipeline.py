@@ -25,7 +25,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .account import Account, things_of
+from .account import Account, things_of, walls_among
 from .arguments import Floats, Ints, Labels, as_count, as_points, as_positive, as_rng, check_type, doubt, short
 from .found import Found
 from .grid import Grid
@@ -130,8 +130,9 @@ def find_shapes(
         the deviations tell by how much. Of points alone nobody knows, and what they scatter beyond the cells, or
         ``noise_std``, is taken as shared: their deviations are wider.
     n_shapes : int, optional
-        How many shapes there are; found when it is not given. ``PAPER`` then takes K-Means' best silhouette.
-        Linking finds the number by itself: with it, and the published measuring, this is not used.
+        How many shapes there are, beside walls; found when it is not given. K-Means, which knows no walls, makes so
+        many groups; without a number ``PAPER`` takes its best silhouette. Linking finds the number by itself: with
+        it, and the published measuring, this is not used.
     resolution : float, optional
         Side of the cells that points lie on, metres; 1 mm when it is not given. A grid knows its own. All lengths of
         the method follow it: a board ten times as large, on cells ten times as large, has the same shapes on it.
@@ -189,7 +190,7 @@ def find_again(
     if n_shapes is not None:
         check_count(n_shapes, points)
     if len(points) == 0 or n_shapes == 0:
-        return Found()
+        return Found(strays=points, resolution=resolution)
     frame = Frame.of(points, resolution)
     local = frame.local(points)
     order = np.lexsort((local[:, 1], local[:, 0]))  # the order of seeing leaves no trace
@@ -279,8 +280,14 @@ def _jointly(
     last = next((group.spread for group in reversed(warm.values())), None)  # as the last fits left it
     groups, spread = _explain_all(together, settings, last, explain)
     margins, opinion = [float("nan")] * len(groups), Opinion(partial(explain, spread=spread))
-    if settings.second_opinion or n_shapes is not None:
-        groups, margins = regrouped(groups, spread, n_shapes, explain=opinion)
+    if settings.second_opinion if n_shapes is None else len(groups) != n_shapes:
+        groups, margins = regrouped(groups, spread, explain=opinion)
+    if n_shapes is not None:
+        walls = walls_among([group.choice for group in groups], n_shapes)
+        shapes = [group for group in groups if group.choice not in walls]
+        rest = [group for group in groups if group.choice in walls]
+        groups, margins = regrouped(shapes, spread, n_shapes, explain=opinion)
+        groups, margins = groups + rest, margins + [float("inf")] * len(rest)
     warm.clear()  # what was not used now will not come again: a map only grows
     warm.update(used)
     return groups, margins, opinion.bounded or any(len(points) > MOST_POINTS for points in together)

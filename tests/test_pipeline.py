@@ -53,6 +53,26 @@ def test_a_given_number_of_shapes_is_used(n):
     assert len(pk.find_shapes(points_of(world), 4, rng=0)) == 4
 
 
+@pytest.mark.parametrize("n", [1, 3])
+def test_a_given_number_counts_no_walls(n):
+    world = pk.random_world(n, walls=True, rng=n)
+    found = pk.find_shapes(points_of(world), n, rng=0)
+    assert (len(found), len(found.walls)) == (n, 4)
+    assert pk.evaluate(found, world).weighted_accuracy == 1.0
+
+
+def test_two_pieces_that_pass_for_walls_are_one_rectangle_when_one_shape_is_told():
+    box = pk.Polygon([(0, 0), (0.2, 0), (0.2, 0.1), (0, 0.1)]).outline(400)
+    pieces = box[(box[:, 1] < 0.001) | (box[:, 1] > 0.099)]
+    (one,) = pk.find_shapes(pieces, 1, settings=pk.Settings(second_opinion=False), rng=0)
+    assert one.kind == "rectangle"
+
+
+def test_where_no_shape_is_asked_for_all_points_are_strays():
+    points = points_of(pk.random_world(1, rng=0))
+    assert len(pk.find_shapes(points, 0, rng=0).strays) == len(points)
+
+
 def test_strays_are_left_out():
     world = pk.random_world(3, rng=5)
     clean, dirty = points_of(world), points_of(world, spurious=0.03)
