@@ -19,11 +19,11 @@ PACKAGE = ROOT / "primkit"
 # The story: a room (a module, or a folder of them) imports only rooms above it. The table of contents, __init__, loads
 # rooms on first use; who imports it from inside could reach everything, so only the command line may.
 # Beside the plan: ``palette`` holds the colours that the plots, the sliders and the scene's page have in common,
-# without matplotlib; ``show`` is how nouns print and show themselves; ``themed`` is how a page is given a picture, and
-# ``notebook`` has it done for figures;
-# ``found`` the list that find_shapes returns; ``rest`` what a report tells of all in it that is no shape.
+# without matplotlib; ``own_code`` is how a student's function is run and stopped; ``show`` is how nouns print and show
+# themselves; ``themed`` is how a page is given a picture, and ``notebook`` has it done for figures; ``found`` the list
+# that find_shapes returns; ``rest`` what a report tells of all in it that is no shape.
 ORDER = (
-    *("arguments", "table", "themed"),
+    *("arguments", "own_code", "table", "themed"),
     *("shapes", "palette", "show", "world", "robot", "raycast", "faults", "rendered", "lidar", "grid"),
     *("segmentation", "ransac", "lines", "circles", "seen"),
     *("robust", "measure", "found", "account", "paper", "steps", "pipeline", "rest", "report", "evaluation"),

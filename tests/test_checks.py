@@ -17,7 +17,8 @@ import numpy as np
 import pytest
 
 import primkit as pk
-from primkit.checks import calls, judges
+from primkit import own_code
+from primkit.checks import judges
 from primkit.checks.answer import VERDICT_COLORS, VERDICT_SIGNS, Answer, Check, Fault
 from tests.answers.styles import STYLES, styled
 from tests.slips import right
@@ -172,11 +173,11 @@ def test_an_error_everywhere_says_what_it_may_come_from():
 
 def test_the_line_of_an_error_from_another_process_is_what_that_says():
     error = ZeroDivisionError("division by zero")
-    assert calls.line_of(error) is None
+    assert own_code.line_of(error) is None
     error.where = "line 2: radius = arc(v)\nline 7: return v / w"
-    assert str(calls.line_of(error)) == "line 7, `return v / w`"
+    assert str(own_code.line_of(error)) == "line 7, `return v / w`"
     error.where = "line 7: a\x1b[0m"
-    assert calls.line_of(error) is None
+    assert own_code.line_of(error) is None
 
 
 def test_a_loop_that_never_ends_is_told_and_the_others_are_not_waited_for():
@@ -199,6 +200,10 @@ def test_a_loop_that_catches_every_exception_is_stopped_too():
                 raise ValueError
 
     assert pk.checks.ray_circle(stubborn, 0.1).fault == "out of time"
+    for _ in range(30):  # wherever in the loop it is stopped, its ValueError goes with it
+        with pytest.raises(own_code.OutOfTime):
+            own_code.call_within(0.002, stubborn)
+        assert sys.exc_info() == (None, None, None)
 
 
 def test_the_tracing_of_before_is_back():

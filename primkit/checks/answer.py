@@ -29,7 +29,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from .calls import Line, OutOfTime, Raised, hint_at, quietly, run
+from ..own_code import Line, OutOfTime
+from .calls import Raised, hint_at, quietly, run
 from .cases import Args
 from .judges import Judge, same, shown
 from .slips import WORDS, find_slips, places

@@ -3,11 +3,6 @@
 In:  a function, the arguments of one call, and how many seconds it may take.
 Out: what it returned, or a ``Raised``; and what NumPy warned of, and where.
 
-A loop that never ends is stopped by Python's own tracing, which looks at the clock at each of the student's lines: it
-needs no signal and no thread, so it also works in a browser and on Windows. What it cannot stop is one call into
-compiled code that never comes back, such as ``sum(itertools.count())``, and a loop with a bare ``except`` around its
-body, which catches this as well: there only the kernel's own interrupt helps.
-
 >>> def halve(x):
 ...     while x > 1:
 ...         pass
@@ -23,29 +18,17 @@ body, which catches this as well: there only the kernel's own interrupt helps.
 from __future__ import annotations
 
 import io
-import linecache
-import re
-import sys
-import sysconfig
 import time
-import traceback
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, redirect_stdout
+from collections.abc import Callable
+from contextlib import redirect_stdout
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..own_code import Line, OutOfTime, call_within, is_own, line_at, line_of
 from .cases import Args
-
-# What lies here is nobody's answer: its lines are not looked at.
-LIBRARIES = (*{sysconfig.get_path(name) for name in ("stdlib", "purelib", "platlib")}, str(Path(__file__).parents[1]))
-
-
-class OutOfTime(BaseException):
-    """The time is over. It is no ``Exception``, so that a student's ``except Exception`` lets it through."""
 
 
 class Interrupted(KeyboardInterrupt):
@@ -53,17 +36,6 @@ class Interrupted(KeyboardInterrupt):
 
     def _render_traceback_(self) -> list[str]:
         return [str(self)]
-
-
-@dataclass(frozen=True)
-class Line:
-    """A line of the student's code: its number in the cell, or in the file, and what it says."""
-
-    number: int
-    text: str = ""
-
-    def __str__(self) -> str:
-        return f"line {self.number}" + (f", `{self.text}`" if self.text else "")
 
 
 @dataclass(frozen=True)
@@ -136,8 +108,7 @@ def run(function: Callable[..., Any], args: Args, seconds: float) -> Run:
         warnings.simplefilter("always", RuntimeWarning)
         warnings.filterwarnings("ignore", category=DeprecationWarning)
         try:
-            with time_limit(seconds):
-                got = function(*args)
+            got = call_within(seconds, function, *args)
         except KeyboardInterrupt as error:
             where = f" in {line}" if (line := line_of(error)) else ""
             raise Interrupted(f"Interrupted{where}. Is there a loop that never ends?") from None
@@ -154,49 +125,3 @@ def quietly(function: Callable[..., Any], args: Args) -> Any:
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         return function(*args)
-
-
-@contextmanager
-def time_limit(seconds: float) -> Iterator[None]:
-    """Stop what runs in this block after so many seconds, with ``OutOfTime``.
-
-    On a busy machine, where this process gets only a part of each second, it may take twice as long.
-    """
-    start, used, before = time.monotonic(), time.process_time(), sys.gettrace()
-
-    def look(frame: Any, _event: str, _more: Any) -> Any:
-        if not is_own(frame.f_code.co_filename):
-            return None
-        over = time.monotonic() - start - seconds
-        if over > 0 and (over > seconds or time.process_time() - used > seconds):
-            raise OutOfTime(f"stopped after {seconds:g} s")
-        return look
-
-    sys.settrace(look)
-    try:
-        yield
-    finally:
-        sys.settrace(before)
-
-
-def is_own(filename: str) -> bool:
-    """Tell whether code was written by the student: in a cell, or in a file beside the notebook."""
-    return not filename.startswith(LIBRARIES)
-
-
-def line_of(error: BaseException) -> Line | None:
-    """Return the student's last line on the way to an error, also to one that comes from another process."""
-    steps = [step for step in traceback.walk_tb(error.__traceback__) if is_own(step[0].f_code.co_filename)]
-    if steps:
-        return line_at(steps[-1][0].f_code.co_filename, steps[-1][1])
-    told = re.fullmatch(r"line (\d{1,6}): (.*)", str(getattr(error, "where", "")).rpartition("\n")[2])
-    return Line(int(told[1]), _cut(told[2])) if told and told[2].isprintable() else None
-
-
-def line_at(filename: str, number: int) -> Line:
-    """Return a line with its text, where Python still knows it."""
-    return Line(number, _cut(linecache.getline(filename, number).strip()))
-
-
-def _cut(text: str) -> str:
-    return text if len(text) <= 70 else text[:67] + "..."

@@ -17,7 +17,7 @@ import copy
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from .calls import Line
+from ..own_code import Line
 
 OPPOSITE = {"min": "max", "argmin": "argmax", "minimum": "maximum", "any": "all", "amin": "amax", "nanmin": "nanmax"}
 OPPOSITE |= {other: name for name, other in OPPOSITE.items()}

@@ -27,7 +27,7 @@ from typing import Any
 
 import numpy as np
 
-from .calls import Line, line_at
+from ..own_code import Line, line_at
 from .edits import edits
 
 PROBES = 6  # wrong cases that an edit is tried on first, and right ones that a part must spare

@@ -11,40 +11,28 @@ Traceback (most recent call last):
     ...
 primkit.scene.own_steps.StepError: fit_circle raises ZeroDivisionError: division by zero, in line 2
 
-A function that does not end is stopped by Python's own tracing, which looks at the clock at each line: that needs no
-signal and no second thread, so it works in a browser, too. What has no next line, one call into compiled code or a loop
-on a single line, cannot be stopped so; it is told, and the drive goes on without it.
+What cannot be stopped, see ``own_code``, is told, and the drive goes on without it.
 """
 
 from __future__ import annotations
 
-import sys
 import time
-import traceback
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 from ..arguments import check_type
 from ..measure import Detection
+from ..own_code import OutOfTime, call_within, line_of
 from ..shapes import Circle
 from ..steps import Steps
 
 SLOW = 1.0  # s: shapes that are later than this are told to be late
 LONGEST = 5.0  # s: a step that has not come back by then is stopped
-OURS = str(
-    Path(__file__).resolve().parents[1]
-)  # the library's own files: who reads of an error wants the line in theirs
 
 
 class StepError(Exception):
     """A step of one's own did not do: why, in one sentence."""
-
-
-class OutOfTime(BaseException):
-    """The time is over; no ``Exception``, so that ``except Exception`` in a step lets it through."""
 
 
 class OwnSteps:
@@ -90,8 +78,7 @@ class OwnSteps:
             begun = time.monotonic()
             self._at_work = name, begun
             try:
-                with time_limit(LONGEST):
-                    return step(*args)
+                return call_within(LONGEST, step, *args)
             except OutOfTime as error:
                 raise StepError(f"{name} did not end, and was stopped after {LONGEST:g} s{_line_of(error)}") from error
             except BaseException as error:  # even exit() must not end the drive
@@ -103,30 +90,7 @@ class OwnSteps:
         return watched
 
 
-@contextmanager
-def time_limit(seconds: float) -> Iterator[None]:
-    """Stop what runs in this block after so many seconds, with ``OutOfTime``."""
-    end, worked, before = time.monotonic() + seconds, time.process_time() + seconds, sys.gettrace()
-
-    def at_line(*_: Any) -> Any:
-        if time.monotonic() > end and time.process_time() > worked:  # of a busy machine we get only a part
-            raise OutOfTime
-        return at_line
-
-    sys.settrace(lambda frame, *_: at_line if _is_own(frame.f_code.co_filename) else None)
-    try:
-        yield
-    finally:
-        sys.settrace(before)
-
-
 def _line_of(error: BaseException) -> str:
     """Return in words which line of somebody's own code an error came from; nothing if from none."""
-    lines = [line for frame, line in traceback.walk_tb(error.__traceback__) if _is_own(frame.f_code.co_filename)]
-    return f", in line {lines[-1]}" if lines else ""
-
-
-def _is_own(filename: str) -> bool:
-    """Tell whether code stands in a cell, or in a file beside the notebook."""
-    ours = filename.startswith((OURS, sys.base_prefix, "<frozen")) or filename.endswith(".pyx")
-    return not ours and "site-packages" not in filename
+    line = line_of(error)
+    return f", in line {line.number}" if line else ""
