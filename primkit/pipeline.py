@@ -207,8 +207,8 @@ def find_again(
     found, bounded = list[Thing](), False
     if steps.measure is not None:
         reach = SIGMAS * _in_steps(spread_of(local))
-        own = [steps.measured(points, reach) for points in together if len(points) and not account.by_chance(points)]
-        found += [one for one in own if one is not None]
+        asked = [points for points in together if len(points) and not account.by_chance(points)]
+        found += filter(None, (steps.measured(points, reach) for points in asked))
     elif settings.method == "published":
         found += _as_published(together, settings, steps, measure_rng)
     else:

@@ -91,8 +91,12 @@ class Steps:
             shape, margin = self.shape(frame.metres(points))
             return shape and in_frame(shape, frame), margin
 
-        own = {"fit_line": self.fit_line and line, "fit_circle": self.fit_circle and circle}
-        return replace(self, **own, measure=self.measure and measured)
+        return replace(
+            self,
+            fit_line=self.fit_line and line,
+            fit_circle=self.fit_circle and circle,
+            measure=self.measure and measured,
+        )
 
     def labels(self, points: Floats, n_shapes: int | None) -> Labels | None:
         """Return what the own ``segment`` says, numbered from 0 without gaps and -1 for strays; None without one."""
