@@ -121,5 +121,5 @@ def _cells(one: Thing, resolution: float) -> tuple[str, ...]:
         centre = lengths_in_mm(one.points.mean(axis=0), resolution)
         return "of no kind", ", ".join(centre), f"about {across} across", n_points, "-", "-"
     at, dimensions = in_mm(one.shape, one.measured, resolution)
-    asked = "-" if one.choice is None else "yes" if one.certain else "no"
+    asked = "-" if one.choice is None and np.isnan(one.told_margin) else "yes" if one.certain else "no"
     return one.kind, at, dimensions, n_points, f"{1000 * one.rms:.2f}", asked

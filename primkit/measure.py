@@ -111,6 +111,8 @@ class Detection:
         The number of the scan that saw each of the points, 0 where it is not known; None where it is of none.
     noise_std : float
         By how much ranges err, as far as that was told, in the unit of the frame.
+    told_margin : float
+        The margin that somebody's own ``Steps.measure`` told; NaN from the library's.
     """
 
     shape: Shape
@@ -123,6 +125,7 @@ class Detection:
     frame: Frame = field(default=HERE, repr=False)
     scans: Ints | None = field(default=None, repr=False)
     noise_std: float = field(default=0.0, repr=False)
+    told_margin: float = field(default=float("nan"), repr=False)
 
     def in_metres(self, frame: Frame) -> Detection:
         """Return what was found in a frame, in metres."""
@@ -173,15 +176,18 @@ class Detection:
         rival; NaN from ``PAPER``, which does not ask. Rivals that could not win are
         fitted now, when the margin is asked for: some 10 ms, once.
         """
-        return float("nan") if self.choice is None else self.choice.margin
+        return self.told_margin if self.choice is None else self.choice.margin
 
     @property
     def certain(self) -> bool:
         """Whether the kind is beyond doubt and the points fit it: what is certain may be trusted. False from ``PAPER``.
 
-        Rivals are all kinds, any outline of straight sides, and an outline that may bend anywhere.
+        Rivals are all kinds, any outline of straight sides, and an outline that may bend anywhere. Of a ``measure`` of
+        one's own the margin that it told is believed.
         """
-        return self.choice is not None and self.choice.certain and not self.count_margin < CERTAIN
+        if self.choice is None:
+            return self.told_margin >= CERTAIN
+        return self.choice.certain and not self.count_margin < CERTAIN
 
     @property
     def kind(self) -> Kind:

@@ -139,7 +139,7 @@ def find_shapes(
     settings : Settings
         ``ROBUST`` or ``PAPER``, or your own.
     steps : Steps, optional
-        Functions of your own in the place of steps: ``Steps(segment=..., fit_line=..., fit_circle=...)``.
+        Functions of your own in the place of steps: ``Steps(segment=..., fit_line=..., fit_circle=..., measure=...)``.
     kinds : sequence of str
         What can be there, if that is known beforehand: some of ``"circle"``, ``"triangle"``, ``"rectangle"``,
         ``"pentagon"`` and ``"polygon"``. ``PAPER`` has no use for it.
@@ -206,7 +206,11 @@ def find_again(
     if settings.noise_std is not None:
         settings = replace(settings, noise_std=settings.noise_std / frame.unit)
     found, bounded = list[Thing](), False
-    if settings.method == "published":
+    if steps.measure is not None:
+        reach = SIGMAS * _in_steps(spread_of(local))
+        asked = [points for points in together if len(points) and not account.by_chance(points)]
+        found += filter(None, (steps.measured(points, reach) for points in asked))
+    elif settings.method == "published":
         found += _as_published(together, settings, steps, measure_rng)
     else:
         together = [points for points in together if not account.by_chance(points)]  # strays, not to be explained

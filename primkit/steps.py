@@ -1,7 +1,8 @@
 """Steps: your own function in the place of one of the pipeline's.
 
-In:  functions: ``segment(points, n_shapes)``, ``fit_line(points)``, ``fit_circle(points)``.
-Out: ``Steps``, for ``find_shapes(points, steps=...)``.
+In:  functions: ``segment(points, n_shapes)``, ``fit_line(points)``, ``fit_circle(points)``, ``measure(points)``,
+     ``score(found, world)``.
+Out: ``Steps``, for ``find_shapes(points, steps=...)``, and live for ``drive_scene(world, steps=...)``.
 
 >>> from primkit.pipeline import find_shapes
 >>> from primkit.shapes import Circle
@@ -15,17 +16,18 @@ Out: ``Steps``, for ``find_shapes(points, steps=...)``.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .arguments import Floats, Labels, short
+from .arguments import ROUNDING, Floats, Labels, short
 from .lines import Line
 from .measure import Detection, Frame, detection
-from .shapes import Circle, Polygon
+from .shapes import Circle, Polygon, Shape
+from .world import World
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,12 @@ class Steps:
     fit_circle : callable, optional
         ``fit_circle(points)``: points of one circle, shape (N, 2), metres. Returns a ``Circle`` or three numbers
         (x, y, radius), or None when they fix none. It measures what was named a circle.
+    measure : callable, optional
+        ``measure(points)``: points of one group, shape (N, 2), metres. Returns what it is and how large, a ``Circle``
+        or a ``Polygon``; the same and its margin, as in ``(shape, 12.5)``, see ``Detection.margin``; or None.
+    score : callable, optional
+        ``score(found, world)``: the shapes found, a list of ``Circle`` and ``Polygon``, and the ``World``. Returns a
+        number from 0 to 1. ``drive_scene`` shows it beside its own; ``find_shapes``, which knows no truth, leaves it.
 
     Examples
     --------
@@ -60,6 +68,8 @@ class Steps:
     segment: Callable[[Floats, int | None], Any] | None = None
     fit_line: Callable[[Floats], Any] | None = None
     fit_circle: Callable[[Floats], Any] | None = None
+    measure: Callable[[Floats], Any] | None = None
+    score: Callable[[list[Shape], World], Any] | None = None
 
     def __post_init__(self) -> None:
         for name, step in vars(self).items():
@@ -77,7 +87,16 @@ class Steps:
             fit = self.circle(frame.metres(points))
             return fit and Circle((fit.center - frame.origin) / frame.unit, fit.radius / frame.unit)
 
-        return replace(self, fit_line=self.fit_line and line, fit_circle=self.fit_circle and circle)
+        def measured(points: Floats) -> tuple[Shape | None, float]:
+            shape, margin = self.shape(frame.metres(points))
+            return shape and in_frame(shape, frame), margin
+
+        return replace(
+            self,
+            fit_line=self.fit_line and line,
+            fit_circle=self.fit_circle and circle,
+            measure=self.measure and measured,
+        )
 
     def labels(self, points: Floats, n_shapes: int | None) -> Labels | None:
         """Return what the own ``segment`` says, numbered from 0 without gaps and -1 for strays; None without one."""
@@ -111,6 +130,31 @@ class Steps:
         if radius <= 0:
             raise ValueError(f"{rule}, with a radius > 0, got {short(circle)}")
         return Circle((x, y), radius)
+
+    def shape(self, points: Floats) -> tuple[Shape | None, float]:
+        """Return what the own ``measure`` says: the shape, or None, and its margin, NaN when it tells none."""
+        assert self.measure is not None
+        told = self.measure(points.copy())
+        shape, margin = told if isinstance(told, tuple) and len(told) == 2 else (told, np.nan)
+        number = _as_array(margin)
+        plain = number is not None and number.shape == () and number.dtype.kind in "iuf"
+        if not (plain and isinstance(shape, Circle | Polygon | None)):
+            raise ValueError(f"measure must return a Circle, a Polygon or None, or (shape, margin), got {short(told)}")
+        return shape, float(margin)
+
+    def judged(self, found: Iterable[Detection], world: World) -> float:
+        """Return what the own ``score`` says of what was found."""
+        assert self.score is not None
+        told = self.score([one.shape for one in found], world)
+        number = _as_array(told)
+        if number is None or number.shape or number.dtype.kind not in "iuf" or not 0 <= number <= 1 + ROUNDING:
+            raise ValueError(f"score must return a number from 0 to 1, got {short(told)}")
+        return float(number)
+
+    def measured(self, points: Floats, reach: float) -> Detection | None:
+        """Return the detection that the own ``measure`` makes of one group; None when that finds nothing."""
+        shape, margin = self.shape(points)
+        return None if shape is None else replace(detection(shape, points, reach), told_margin=margin)
 
     def remeasured(self, found: Detection, reach: float, *, sides: bool = True) -> Detection | None:
         """Return the detection measured with the own fits; None when they find nothing.
@@ -177,6 +221,13 @@ def kept_kind(fitted: Polygon, before: Polygon) -> Polygon:
     axes = np.array([along, [-along[1], along[0]]]) / np.hypot(*along)
     half = (fitted.sides[:2] + fitted.sides[2:]) / 4
     return Polygon(fitted.centroid + np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * half @ axes)
+
+
+def in_frame(shape: Shape, frame: Frame) -> Shape:
+    """Return a shape in metres as one of the frame's; ``Detection.in_metres`` leads back."""
+    if isinstance(shape, Circle):
+        return Circle((shape.center - frame.origin) / frame.unit, shape.radius / frame.unit)
+    return Polygon((shape.vertices - frame.origin) / frame.unit)
 
 
 def nearest_side(polygon: Polygon, points: Floats) -> Labels:

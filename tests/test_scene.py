@@ -836,6 +836,23 @@ def test_a_wrong_step_invents_what_is_not_there_or_explains_nothing(right, wrong
     assert strays[1] > 0.9 if shares[1] is None else shares[1] > 0.1
 
 
+def test_a_score_of_one_s_own_stands_beside_the_library_s(world):
+    """A judge that asks for too little is seen to flatter; one that is right says the same; what it raises is told."""
+    judges = {
+        "right": lambda found, world: pk.evaluate(found, world).weighted_accuracy,
+        "generous": lambda found, world: min(1.0, len(found) / len(world.shapes)),
+    }
+    for name, judge in judges.items():
+        scene = own_scene(world, score=judge)
+        drive_round(scene, 40)
+        scene.state.finish()
+        state = scene.state
+        assert scene._score().endswith(f"score {state.score:.2f}, yours {state.last.own_score:.2f}")
+        assert (state.last.own_score == state.score) == (name == "right")
+    raising = own_scene(world, score=lambda _found, _world: 1 / 0)
+    assert drive_round(raising, 5)[-1].startswith("score raises ZeroDivisionError")
+
+
 def test_a_segmentation_of_one_s_own_is_not_mended(world):
     """Grouped left and right of the middle, four shapes are never found; a second opinion would find them."""
     halves = pk.Steps(segment=lambda points, _: (points[:, 0] > 0).astype(int))
@@ -863,11 +880,15 @@ def test_a_segmentation_of_one_s_own_is_not_mended(world):
             {"fit_circle": lambda _: (5.0, 5.0, 0.1)},
             "fit_circle returns a circle that lies on none of its points; the ",
         ),
+        (
+            {"measure": lambda p: (pk.Circle(p.mean(axis=0) + 5, 0.1), 99)},
+            "measure returns a circle that lies on none of its points; the ",
+        ),
         ({"segment": lambda _, __: None}, "segment must return a whole number for each of the "),
         ({"fit_circle": exits}, "fit_circle raises SystemExit"),
         ({"fit_circle": for_ever}, "fit_circle did not end, and was stopped after 0.2 s, in line "),
     ],
-    ids=["raises", "another type", "elsewhere", "nothing", "exit", "for ever"],
+    ids=["raises", "another type", "elsewhere", "measured elsewhere", "nothing", "exit", "for ever"],
 )
 def test_what_is_wrong_with_one_s_own_step_is_told_and_one_drives_on(steps, sentence, monkeypatch):
     monkeypatch.setattr("primkit.scene.own_steps.LONGEST", 0.2)

@@ -109,6 +109,48 @@ def test_a_shape_that_the_own_fit_finds_nothing_for_is_left_out(step):
     assert kinds == ({"circle"} if step == "fit_line" else {"rectangle", "triangle"})
 
 
+@pytest.mark.parametrize("times", [1, 10])
+@pytest.mark.parametrize("settings", [pk.ROBUST, QUICK], ids=["robust", "paper"])
+def test_an_own_measure_names_each_group_on_any_scale(settings, times):
+    """The library's own, handed in: the same shapes; points that were not explained are strays, and none vanishes."""
+
+    def measure(points):
+        one = pk.measure_shape(points, 0.0004 * times, resolution=0.001 * times)
+        return one.shape, one.margin
+
+    steps = pk.Steps(measure=measure)
+    points = times * POINTS
+    found = pk.find_shapes(points, 4, resolution=0.001 * times, settings=settings, steps=steps, rng=0)
+    true = pk.World(
+        [
+            pk.Polygon(times * s.vertices) if hasattr(s, "vertices") else pk.Circle(times * s.center, times * s.radius)
+            for s in WORLD.shapes
+        ],
+        size=times,
+    )
+    assert pk.evaluate(found, true, 0.005 * times).weighted_accuracy == 1.0
+    assert all(one.certain and one.margin > 10 for one in found)
+    assert sum(len(one.points) for one in found) + len(found.strays) == len(points)
+
+
+@pytest.mark.parametrize(("margin", "certain"), [(9.9, False), (10.0, True), (np.nan, False)])
+def test_of_an_own_measure_the_margin_is_believed(margin, certain):
+    steps = pk.Steps(measure=lambda p: (pk.Circle(p.mean(axis=0), 0.05), margin))
+    assert {one.certain for one in pk.find_shapes(POINTS, steps=steps, rng=0)} == {certain}
+    without = pk.Steps(measure=lambda p: pk.Circle(p.mean(axis=0), 0.05))
+    assert not any(one.certain for one in pk.find_shapes(POINTS, steps=without, rng=0))
+    assert pk.find_shapes(POINTS, steps=pk.Steps(measure=lambda _: None), rng=0) == []
+
+
+@pytest.mark.parametrize(
+    ("told", "message"),
+    [("good", "got 'good'"), (1.2, "got 1.2"), (np.nan, "got nan"), ([1, 1], r"got \[1, 1\]")],
+)
+def test_a_score_that_is_none_is_refused(told, message):
+    with pytest.raises(ValueError, match=f"score must return a number from 0 to 1, .*{message}"):
+        pk.Steps(score=lambda _found, _world: told).judged([], WORLD)
+
+
 def test_own_functions_cannot_change_the_points():
     def greedy(points, _n_shapes):
         points[:] = 0.0
@@ -130,6 +172,11 @@ def test_own_functions_cannot_change_the_points():
         ({"fit_circle": lambda _p: (0, 0, -1)}, r"with a radius > 0, got \(0, 0, -1\)"),
         ({"fit_circle": lambda _p: (0, 0, np.nan)}, r"fit_circle must return .* got \(0, 0, nan\)"),
         ({"fit_line": lambda _p: "y = 2x"}, r"fit_line must return a Line, \(angle, offset\) or None, got 'y = 2x'"),
+        (
+            {"measure": lambda _p: "round"},
+            r"measure must return a Circle, a Polygon or None, or \(shape, margin\), got 'r",
+        ),
+        ({"measure": lambda _p: (pk.Circle((0, 0), 1), "sure")}, r"or \(shape, margin\), got \(Circle"),
         (
             {"fit_line": lambda p: (0.0, p[0, 0])},
             "fit_line's lines along the .* must meet in its corners, got angles 0, ",

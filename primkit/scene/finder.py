@@ -81,16 +81,20 @@ def _do(done: Future[T], fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwarg
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """The shapes that were found, from left to right; how many scans the points were made of; and how all is drawn."""
+    """The shapes that were found, from left to right; how many scans the points were made of; and how all is drawn.
+
+    ``own_score``: what somebody's own score says of them; None without one.
+    """
 
     found: Found
     n_scans: int
     drawn: Message
+    own_score: float | None = None
 
     @classmethod
-    def at(cls, found: Found, n_scans: int) -> Look:
+    def at(cls, found: Found, n_scans: int, judge: Callable[[Found], float] | None = None) -> Look:
         """Return the look; what it takes to draw it is worked out here, where the robot does not wait for it."""
-        return cls(found, n_scans, describe(found))
+        return cls(found, n_scans, describe(found), judge and judge(found))
 
 
 def thin_out(cells: Ints, most: int = MOST_CELLS) -> Bools:
@@ -140,14 +144,20 @@ class Finder:
         """Whether looks make the robot wait, because there are no threads to do them beside the drive."""
         return isinstance(self._executor, Beside) and not self._executor.threads
 
-    def look(self, mapper: Mapper, n_scans: int, most: int = MOST_CELLS) -> None:
+    def look(
+        self,
+        mapper: Mapper,
+        n_scans: int,
+        most: int = MOST_CELLS,
+        judge: Callable[[Found], float] | None = None,
+    ) -> None:
         """Begin to look at a map as it is now, or at so many of its cells; while another look lasts, do nothing."""
         if self._under_way is None:
             grid = copy(mapper.grid)
             if len(grid) > most:
                 grid = Grid(grid.resolution)
                 grid.add(mapper.grid.points()[thin_out(mapper.grid.cells, most)])
-            self._under_way = self._executor.submit(lambda: Look.at(mapper.look(grid), n_scans))
+            self._under_way = self._executor.submit(lambda: Look.at(mapper.look(grid), n_scans, judge))
 
     def news(self, *, wait: bool = False) -> Look | None:
         """Return the look that was begun, once it is done (``wait`` for that), and once only; None without news.

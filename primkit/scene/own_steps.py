@@ -66,7 +66,8 @@ class OwnSteps:
     def nonsense(self, found: Iterable[Detection]) -> str:
         """Which step returned what its own points deny, in one sentence; nothing when none did."""
         for one in found:
-            name = "fit_circle" if isinstance(one.shape, Circle) else "fit_line"
+            fit = "fit_circle" if isinstance(one.shape, Circle) else "fit_line"
+            name = "measure" if self.steps.measure is not None else fit
             if len(one.points) == 0 and getattr(self.steps, name) is not None:
                 return f"{name} returns a {one.kind} that lies on none of its points"
         return ""

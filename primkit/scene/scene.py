@@ -214,7 +214,8 @@ class Scene(anywidget.AnyWidget):
         driven = f"{state.time:.1f} s · {count(state.n_scans, 'scan')}"
         age = state.n_scans - state.n_scans_found
         old = f" · shapes {age * state.lidar.period:.1f} s old" if age > FRESH_SCANS and state.looks else ""
-        return f"{driven} · {count_found(state.found)} · score {state.score:.2f}{old}"
+        own = "" if state.last.own_score is None else f", yours {state.last.own_score:.2f}"
+        return f"{driven} · {count_found(state.found)} · score {state.score:.2f}{own}{old}"
 
     def _now(self) -> Message:
         """Return what every step changes: pose, ranges, time, score."""

@@ -25,6 +25,7 @@ from __future__ import annotations
 
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -182,7 +183,8 @@ class DriveState:
         self._n_news = 0
         if not self.finder.busy:
             self.own.begin()
-        self.finder.look(self._mapper, self.n_scans, most)
+        judge = self.own.steps.score and partial(self.own.steps.judged, world=self.world)
+        self.finder.look(self._mapper, self.n_scans, most, judge)
 
     def _fetch(self, wait: bool = False) -> bool:
         news = self.finder.news(wait=wait)
