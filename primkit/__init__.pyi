@@ -8,7 +8,8 @@ from .world import World as World, random_world as random_world
 from .robot import teleport_poses as teleport_poses, skipped_waypoints as skipped_waypoints, drive as drive
 from .robot import published_poses as published_poses
 from .raycast import cast_rays as cast_rays
-from .lidar import Lidar as Lidar, Scans as Scans, scan as scan, scan_blocks as scan_blocks
+from .sensors import Lidar as Lidar, RPLIDAR_A1 as RPLIDAR_A1, LDS_01 as LDS_01
+from .lidar import Scans as Scans, scan as scan, scan_blocks as scan_blocks
 from .grid import Grid as Grid
 from .driving.moving_grid import MovingGrid as MovingGrid
 

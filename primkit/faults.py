@@ -1,4 +1,4 @@
-"""Faults: what a sensor does to its ranges: noise, hits that are lost, and hits on nothing.
+"""Faults: what a sensor does to its ranges: noise, hits that are lost, hits on nothing, and rounding.
 
 In:  a LiDAR and how many scans there will be; ranges, shape (P, B), metres, without faults.
 Out: the same array, disturbed in place.
@@ -47,3 +47,7 @@ class Faults:
         if lidar.spurious > 0:
             ghost = self.ghosts.random(ranges.shape) < lidar.spurious
             ranges[ghost] = self.places.uniform(lidar.range_min, lidar.range_max, int(ghost.sum()))
+        if lidar.range_step > 0:
+            hit = np.isfinite(ranges)
+            rounded = np.round(ranges[hit] / lidar.range_step) * lidar.range_step
+            ranges[hit] = np.clip(rounded, lidar.range_min, lidar.range_max)

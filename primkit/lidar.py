@@ -17,111 +17,38 @@ Source: the sensor is that of the paper's section 3.1; field names follow the La
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .arguments import (
     FARTHEST,
+    ROUNDING,
     Bools,
     Floats,
     as_count,
     as_floats,
     as_poses,
-    as_positive,
-    as_share,
     check_type,
     doubt,
-    limit,
-    short,
 )
 from .faults import Faults
 from .raycast import cast
-from .rendered import FIELD, LEAST_BEAMS, render, rendered_bearings
+from .raycast.fan import TURN
+from .rendered import render
+from .sensors import ALL_ROUND, FARTHEST_HIT, TWICE_ROUND
+from .sensors import Lidar as Lidar
+from .sensors import as_lidar as as_lidar
 from .show import thumbnail
 from .table import count
 from .world import World
 
 SCANS_AT_ONCE = 10_000  # scans that are worked on at a time: 8 MB of ranges
-MOST_BEAMS = 1_000_000
 SCAN_SHAPES = {"poses": "(P, 3)", "angles": "(B,)", "ranges": "(P, B)", "inside": "(P,)"}
-# No scanner reaches a kilometre, no sensor's bearings go round twice, and no robot turns by 90 radians to the digit.
-FARTHEST_HIT, TWICE_ROUND, DEGREES = 1000.0, 4 * np.pi, 5.0
-
-
-@dataclass(frozen=True)
-class Lidar:
-    """A LiDAR that turns once: the paper's, unless told otherwise. Raises ValueError if an argument is out of range.
-
-    Parameters
-    ----------
-    beams : int
-        Evenly spread over the full turn; beam 0 looks straight ahead, the others follow counter-clockwise.
-    range_min, range_max : float
-        Nearest and farthest distance that is measured, in metres. A nearer outline still blocks the beam.
-    noise_std : float
-        Standard deviation of the error of each range, in metres.
-    period : float, seconds that one scan takes
-    dropout, spurious : float
-        Shares from 0 to 1: of the hits, that are lost; of all beams, that return a random range, whatever is there.
-    model : {"exact", "webots"}
-        ``"exact"``: each beam meets the outline where geometry says. ``"webots"``: as the simulator of the paper's
-        authors renders it, wrong by 1.7 mm (root mean square) along an outline, see ``rendered``; its beams spread over
-        6.28 rad, the first one looks back, and no range equals ``range_max``.
-
-    Examples
-    --------
-    >>> Lidar().angles[:3].round(4).tolist()
-    [0.0, 0.0628, 0.1257]
-    >>> Lidar(model="webots").angles[:3].round(4).tolist()
-    [-3.1086, -3.0458, -2.983]
-    """
-
-    beams: int = 100
-    range_min: float = 0.05
-    range_max: float = 0.3
-    noise_std: float = 0.0
-    period: float = 0.1
-    dropout: float = 0.0
-    spurious: float = 0.0
-    model: Literal["exact", "webots"] = "exact"
-
-    def __post_init__(self) -> None:
-        limit(as_count(self.beams, "beams"), MOST_BEAMS, "beams must be at most {}")
-        for name in ("range_min", "noise_std", "range_max", "period"):
-            as_positive(getattr(self, name), name, zero=name in ("range_min", "noise_std"))
-        for name in ("dropout", "spurious"):
-            as_share(getattr(self, name), name)
-        if self.range_min >= self.range_max:
-            raise ValueError(f"range_min must be below range_max, got {self.range_min:g} and {self.range_max:g}")
-        for name, least in (("noise_std", self.range_max), ("range_max", FARTHEST_HIT)):
-            if getattr(self, name) > least:
-                doubt(f"{name} is {getattr(self, name):g} m: is it in millimetres?", depth=2)
-        if self.model not in ("exact", "webots"):
-            raise ValueError(f'model must be "exact" or "webots", got {short(self.model)}')
-        if self.model == "webots" and self.beams < LEAST_BEAMS:
-            raise ValueError(f'model "webots" must have at least {LEAST_BEAMS} beams, got {self.beams}')
-
-    @property
-    def angle_increment(self) -> float:
-        """Angle from one beam to the next, in radians."""
-        return (2 * np.pi if self.model == "exact" else FIELD) / self.beams
-
-    @property
-    def angles(self) -> Floats:
-        """Bearing of each beam from the robot's heading, shape (B,), radians, increasing within a turn."""
-        if self.model == "webots":
-            return rendered_bearings(self.beams)
-        return np.arange(self.beams, dtype=float) * self.angle_increment
-
-
-def as_lidar(lidar: Lidar | None) -> Lidar:
-    """Return the sensor, the paper's for None, or refuse what is none."""
-    check_type(lidar, (Lidar, type(None)), "lidar must be a Lidar, such as Lidar()")
-    return Lidar() if lidar is None else lidar
+DEGREES = 5.0  # no robot turns by 90 radians to the digit
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,17 +129,25 @@ class Scans:
         return _checked_before(self.poses[which], self.angles, self.ranges[which], self.inside[which])
 
 
-def as_ranges(ranges: ArrayLike, range_max: float = np.inf) -> Floats:
+def as_ranges(ranges: ArrayLike, range_max: float = np.inf, range_min: float = 0.0) -> Floats:
     """Return what a sensor's driver writes as ranges, of the same shape: ``inf`` for all that is no hit.
 
-    A hit lies above 0 and below the sensor's greatest range; all else is what drivers write for a beam that met nothing
-    or went wrong.
+    The rules, for every reader:
 
-    >>> as_ranges([0.2, 0.0, float("nan"), -1.0, 81.83, 81.82], range_max=81.83).tolist()
-    [0.2, inf, inf, inf, inf, 81.82]
+    ==============================  ======  ===================================================
+    reading                         is      because
+    ==============================  ======  ===================================================
+    0, below 0, NaN, inf, -inf      no hit  so drivers tell that nothing, or no good, came back
+    below ``range_min``             no hit  LaserScan: to be discarded
+    ``range_min`` itself            a hit   the limit is included
+    ``range_max`` itself, and more  no hit  so drivers tell that nothing came back
+    ==============================  ======  ===================================================
+
+    >>> as_ranges([0.2, 0.0, float("nan"), -1.0, 81.83, 81.82, 0.1], range_max=81.83, range_min=0.2).tolist()
+    [0.2, inf, inf, inf, inf, 81.82, inf]
     """
     values = _as_array("ranges", ranges)
-    return np.where((values > 0) & (values < range_max), values, np.inf)
+    return np.where((values > 0) & (values >= range_min) & (values < range_max), values, np.inf)
 
 
 def check_scan_type(field: str, dtype: DTypeLike) -> None:
@@ -310,10 +245,20 @@ def _scanned(
 
 
 def _block(world: World, poses: Floats, lidar: Lidar, faults: Faults) -> Scans:
-    angles, look = lidar.angles, cast if lidar.model == "exact" else render
+    angles, plain = lidar.angles, lidar.sweep == ALL_ROUND
+    look: Callable[..., tuple[Floats, Bools]] = render if lidar.model == "webots" else cast if plain else _cast_in_turn
     ranges, inside = look(world, poses, angles, lidar.range_max, lidar.range_min)
     for start in range(0, len(poses), SCANS_AT_ONCE):
         faults.disturb(ranges[start : start + SCANS_AT_ONCE])
     if lidar.model == "exact":
         ranges[inside] = np.inf
     return _checked_before(poses, angles, ranges, inside)
+
+
+def _cast_in_turn(world: World, poses: Floats, angles: Floats, *limits: float) -> tuple[Floats, Bools]:
+    """Cast beams in the order of a sweep: the caster wants them counter-clockwise, and each bearing once."""
+    way = slice(None, None, -1 if angles[-1] < angles[0] else 1)
+    closed = abs(angles[-1] - angles[0]) > TURN - ROUNDING
+    ranges, inside = cast(world, poses, angles[: len(angles) - closed][way].copy(), *limits)
+    ranges = ranges[:, way]
+    return np.column_stack([ranges, ranges[:, :1]]) if closed else ranges.copy(), inside

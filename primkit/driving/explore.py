@@ -121,7 +121,7 @@ def explore(
     Exploration: no shapes from 3 scans in 4.2 s; out of scans
     """
     check_type(world, World, "world must be a World, as in explore(world)")
-    lidar = as_lidar(lidar)
+    lidar = as_lidar(lidar, around=True)
     most_scans = as_count(most_scans, "most_scans")
     pose = advance(world, start_pose(world) if start is None else start, (0, 0), 0)[0]  # refused unless it is clear
     tour = _Tour(world, lidar, pose, steps, as_rng(rng))

@@ -65,7 +65,7 @@ class MovingGrid:
     """A set of occupied square cells with a side of ``resolution`` metres, each of which holds until contradicted.
 
     The limits of the ``lidar``, the paper's by default, say what a beam without a hit means. Raises ValueError if the
-    resolution is not a finite number above zero, or the lidar is none.
+    resolution is not a finite number above zero, or the lidar is none that looks all round.
 
     >>> grid = MovingGrid()
     >>> len(grid), grid.n_scans
@@ -74,7 +74,7 @@ class MovingGrid:
 
     def __init__(self, resolution: float = 0.001, lidar: Lidar | None = None) -> None:
         self._frame = Grid(resolution)  # stays empty: where its cells lie, these lie
-        self.lidar = as_lidar(lidar)
+        self.lidar = as_lidar(lidar, around=True)
         self.n_scans = 0  # how many scans were added
         self._cells = np.zeros(0, dtype=CELL_FIELDS)
         self._gone = np.zeros(0, dtype=GONE_FIELDS)

@@ -41,6 +41,8 @@ from .values import check_format, numbers_in, parsed
 DRIVE_ENDINGS = (".jsonl",)
 DRIVE_LIMIT = 64 * 2**20  # bytes: most of an hour with ten scans of 100 beams a second if all of them hit something
 DRIVE_FORMAT, DRIVE_VERSION = "primkit drive", 1
+# What older drives do not tell of their sensor: its model, and the rest, which is told only where it is another.
+LATER = {field.name: field.default for field in fields(Lidar)[7:]}
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,7 +204,8 @@ def load_drive(path: StrPath) -> Drive:
 
 def _head(lidar: Lidar) -> bytes:
     """Return the first line of a drive's file."""
-    return _json({"format": DRIVE_FORMAT, "version": DRIVE_VERSION, "lidar": asdict(lidar)})
+    told = {name: value for name, value in asdict(lidar).items() if name == "model" or value != LATER.get(name)}
+    return _json({"format": DRIVE_FORMAT, "version": DRIVE_VERSION, "lidar": told})
 
 
 def _line(scans: Scans, number: int, wheels: Floats) -> bytes:
@@ -236,8 +239,8 @@ def _lidar_in(line: bytes) -> Lidar:
         told = parsed(line)
     check_format(told, DRIVE_FORMAT, DRIVE_VERSION, "its first line with", line[:40])
     lidar, names = told.get("lidar"), {field.name for field in fields(Lidar)}
-    if not isinstance(lidar, dict) or set({"model": "exact"} | lidar) != names:  # older drives tell no model
-        raise ValueError(f"lidar must have {', '.join(sorted(names))}, got {short(lidar)}")
+    if not isinstance(lidar, dict) or set(LATER | lidar) != names:
+        raise ValueError(f"lidar must have {', '.join(sorted({*names - set(LATER), 'model'}))}, got {short(lidar)}")
     return Lidar(**lidar)
 
 
