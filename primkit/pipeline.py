@@ -32,7 +32,7 @@ from .grid import Grid
 from .measure import CELL, Detection, Frame, Thing, detection
 from .paper import CIRCLE_TRIALS, LINE_TRIALS, ON_LINE, one_start_kmeans, shape_as_published
 from .robust.candidates import MOST_POINTS
-from .robust.regroup import Group, Opinion, explained, grown, regrouped
+from .robust.regroup import WORK_OF_A_TRY, Group, Opinion, explained, grown, regrouped
 from .robust.scatter import LEAST_SPREAD, SIGMAS, noise_of, spread_across, spread_from_median, spread_of
 from .segmentation import Grouping, check_count, count_by_silhouette, segment
 from .shapes import KINDS, Kind
@@ -45,6 +45,7 @@ WarmStarts = dict[tuple[bytes, float, int, bool, bool, tuple[str, ...]], Group]
 SAME_SPREAD = 1.25  # fits are done anew when the spread comes out farther than this from what was supposed
 CONTRADICTED = 1.5  # neighbours scatter less than their noise lets them, if anything
 MOST_LOW = 2.5  # neighbours scatter at least by this part of the spread
+ENOUGH_GROUPS = 24  # tell it
 SPREAD_ROUNDS = 2  # from the neighbours' estimate, a third low at most, two rounds get there
 
 
@@ -284,6 +285,7 @@ def _jointly(
     last = next((group.spread for group in reversed(warm.values())), None)  # as the last fits left it
     groups, spread = _explain_all(together, settings, last, explain)
     margins, opinion = [float("nan")] * len(groups), Opinion(partial(explain, spread=spread))
+    opinion.work = sum(len(points) + WORK_OF_A_TRY for points in together)
     if settings.second_opinion if n_shapes is None else len(groups) != n_shapes:
         groups, margins = regrouped(groups, spread, explain=opinion)
     if n_shapes is not None:
@@ -309,17 +311,16 @@ def _explain_all(
     spread = last if last and told is None else _in_steps(spread_of(points))
     if told is not None and spread <= CONTRADICTED * told:
         return [explain(points, told) for points in together], told
-    groups = [explain(points, spread) for points in together]
+    some = together[:: -(-len(together) // ENOUGH_GROUPS)] if together else []
     for _ in range(SPREAD_ROUNDS):
-        fitted = _spread_of_fits(groups)
+        fitted = _spread_of_fits([explain(points, spread) for points in some])
         if fitted is None or 1 / SAME_SPREAD <= fitted / spread <= SAME_SPREAD:
             break
         spread = _in_steps(min(fitted, MOST_LOW * spread_of(points)))  # fits are far off where shapes are not parted
-        groups = [explain(points, spread) for points in together]
     if told is not None:
         times = f"{spread / told:.1f} times as far as that"
         doubt(f"noise_std is contradicted by the points, which scatter {times}: they are believed instead", depth=4)
-    return groups, spread
+    return [explain(points, spread) for points in together], spread
 
 
 def _in_steps(spread: float) -> float:

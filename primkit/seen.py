@@ -31,7 +31,8 @@ def is_seen(places: Floats, points: Floats, reach: float = REACH) -> Bools:
 
     if len(points) == 0:
         return np.zeros(places.shape[:-1], dtype=bool)
-    near: Bools = cKDTree(points).query(places)[0] <= reach
+    tree = cKDTree(points, compact_nodes=False, balanced_tree=False)  # quicker to build; it is asked once
+    near: Bools = tree.query(places, distance_upper_bound=np.nextafter(reach, np.inf))[0] <= reach
     return near
 
 

@@ -36,16 +36,18 @@ from ..shapes import KINDS, Polygon, Shape
 from .candidates import MOST_POINTS, candidates, explained_again
 from .choice import Choice
 from .evidence import CERTAIN, NEARLY_ALL, Candidate, joint_cost
+from .outlines import Outlines
 from .scatter import NOWHERE, SIGMAS
 
 Explain = Callable[[Floats], "Group"]
 
-# A second opinion explains at most so many points, and each try counts as so many more: about a second's work.
-MOST_WORK, WORK_OF_A_TRY = 50_000, 250
+# At most so many points are explained, and each try counts as so many more: about two seconds' work.
+MOST_WORK, WORK_OF_A_TRY = 100_000, 250
 
 MOST_ACROSS = 0.45  # m: the paper's largest rectangle is 0.424 m from corner to corner; wider pieces are of two shapes
 HULL_SPREADS, HULL_CELLS = 6.0, 0.002  # the hull runs along the outermost points: others lie up to so much inside [m]
 FINER_LINKS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0)  # a group is cut where it falls apart first, linked so much more finely
+MOST_JOINTS = 3  # ways to cut an outline between two corners
 JOINT_COST = 40.0  # two shapes seldom stand so close that nothing is seen between them
 FEW_NEW = 0.1  # share of new points up to which a group is fitted anew from what it was
 FEW_OFF = 0.02  # share of the points by which more may lie beside a group's shape then
@@ -69,9 +71,11 @@ class Group:
         return self.ranked[0].shape if self.ranked else None
 
     @cached_property
-    def box(self) -> tuple[Floats, Floats]:
-        """The lower left and the upper right of the box around the points, metres."""
-        return self.points.min(axis=0), self.points.max(axis=0)
+    def hull(self) -> Floats:
+        """The corners of the convex hull of the points, shape (M, 2), metres."""
+        import shapely
+
+        return np.asarray(shapely.get_coordinates(shapely.MultiPoint(self.points).convex_hull))
 
     @cached_property
     def closed(self) -> bool:
@@ -90,7 +94,7 @@ class _Tried:
     """What was tried: how groups would split, what pairs would merge into, and by how much a group won."""
 
     halves: dict[Group, tuple[Group, ...]] = field(default_factory=dict)
-    unions: dict[tuple[Group, Group], Group | None] = field(default_factory=dict)
+    unions: dict[tuple[Group, Group], Group] = field(default_factory=dict)
     won_by: dict[Group, float] = field(default_factory=dict)
 
 
@@ -208,7 +212,7 @@ def _margin(group: Group, groups: list[Group], tried: _Tried) -> float:
     """Return how much worse the best other grouping of a group's points is; infinite when none was tried."""
     others = [tried.won_by.get(group, float("inf")), _gain(tried.halves.get(group, ()), group)]
     for (a, b), union in tried.unions.items():
-        if union is not None and group in (a, b) and a in groups and b in groups:
+        if group in (a, b) and a in groups and b in groups:
             others.append(cost_of([union]) - cost_of([a, b]))
     split = next((parts for parts in tried.halves.values() if group in parts), ())
     if any(part in groups and not part.choice.certain for part in split):
@@ -246,7 +250,8 @@ def _halves(group: Group, spread: float, n_shapes: int | None, explain: Explain)
     """Return a group as two; nothing when it is too small or too large, or well explained as it is."""
     if not group.ranked or not 2 * LEAST_GROUP <= len(group.points) <= MOST_POINTS:
         return ()
-    plain = not group.choice.inside.any() and group.ranked[0].kind != "polygon"
+    figure = group.ranked[0].figure
+    plain = not group.choice.inside.any() and (not isinstance(figure, Outlines) or figure.convex)
     if n_shapes is None and plain and _share_on_shape(group, spread) >= NEARLY_ALL:
         return ()
     ways = [parts for side in _sides(group, spread) if (parts := _parts(group.points, side, explain))]
@@ -270,8 +275,12 @@ def _sides(group: Group, spread: float) -> list[NDArray[np.bool_]]:
     Where neighbours are farther apart than elsewhere; along the points inside it, which were seen through the mouth
     between two shapes; and by K-Means.
     """
-    points = group.points
-    ways = [kmeans(points, 2, rng=0) > 0]
+    points, figure = group.points, group.ranked[0].figure
+    ways = []
+    if isinstance(figure, Outlines) and not figure.convex:
+        place = figure.places(points)[0]
+        ways += [(first < place) & (place <= last) for first, last in _joints(figure)]
+    ways = ways or [kmeans(points, 2, rng=0) > 0]
     if (mouth := fit_line(points[group.choice.inside])) is not None:
         beyond, reach = mouth.signed_distance(points), SIGMAS * spread
         ways += [beyond > reach, beyond > -reach]  # what lies on it is a side of the one or of the other
@@ -281,6 +290,30 @@ def _sides(group: Group, spread: float) -> list[NDArray[np.bool_]]:
             ways.append(labels == np.bincount(labels[labels >= 0]).argmax())
             break
     return ways
+
+
+def _joints(outline: Outlines) -> list[tuple[float, float]]:
+    """Return where two convex shapes would meet that make this outline: between which two places along it the one lies.
+
+    One of them at least is a corner that bends inwards, and cut there, the outline leaves the least of such corners.
+    """
+    corners, places = outline.corners()[0], np.cumsum(np.append(0.0, np.subtract(*outline.spans()[::-1])[0]))
+    inwards = np.flatnonzero(_turns(corners) < 0).tolist()
+    left = {}
+    for i, j in combinations(range(len(corners)), 2):
+        if i not in inwards and j not in inwards:
+            continue
+        one, other = corners[i : j + 1], np.concatenate([corners[j:], corners[: i + 1]])
+        if len(one) > 2 and len(other) > 2:
+            left[places[i], places[j]] = sum(-np.minimum(_turns(part), 0.0).sum() for part in (one, other))
+    return sorted(left, key=lambda ends: left[ends])[:MOST_JOINTS]
+
+
+def _turns(corners: Floats) -> Floats:
+    """Return by how much an outline turns to the left at each of its corners, shape (K, 2) -> (K,), radians."""
+    x, y = (corners - np.roll(corners, 1, axis=0)).T
+    angles = np.arctan2(y, x)
+    return np.mod(np.roll(angles, -1) - angles + np.pi, 2 * np.pi) - np.pi
 
 
 def _share_on_shape(group: Group, spread: float) -> float:
@@ -294,13 +327,14 @@ def _merge_all(
     groups: list[Group], spread: float, n_shapes: int | None, explain: Opinion, tried: _Tried
 ) -> list[Group]:
     """Merge the two groups that gain most by it, again and again."""
+    asked = set[tuple[Group, Group]]()
     while len(groups) > (n_shapes or 1):
         best, best_gain = None, 0.0 if n_shapes is None else np.inf
         for a, b in combinations(groups, 2):
-            if (a, b) not in tried.unions:
-                plausible = not explain.bounded and (n_shapes is not None or _may_be_one(a, b, spread))
-                tried.unions[a, b] = explain(np.vstack([a.points, b.points])) if plausible else None
-            one = tried.unions[a, b]
+            if (a, b) not in asked and not explain.bounded and (n_shapes is not None or _may_be_one(a, b, spread)):
+                tried.unions[a, b] = explain(np.vstack([a.points, b.points]))
+            asked.add((a, b))
+            one = tried.unions.get((a, b))
             gain = cost_of([one]) - cost_of([a, b]) if one is not None and one.ranked else np.inf
             if one is not None and gain < best_gain:
                 best, best_gain = (a, b, one), gain
@@ -317,19 +351,20 @@ def _may_be_one(a: Group, b: Group, spread: float) -> bool:
 
     One of them must be open, and the points of both must lie along the hull of both.
     """
-    import shapely
-
     if (a.closed and b.closed) or len(a.points) + len(b.points) > MOST_POINTS or _apart(a, b) > MOST_ACROSS:
         return False
-    points = np.vstack([a.points, b.points])
-    hull = shapely.MultiPoint(points).convex_hull
-    if 2 * shapely.minimum_bounding_radius(hull) > MOST_ACROSS:
+    import shapely
+
+    hull = shapely.get_coordinates(shapely.MultiPoint(np.vstack([a.hull, b.hull])).convex_hull)
+    if np.hypot(*np.moveaxis(hull[:, None] - hull, 2, 0)).max() > MOST_ACROSS:
         return False
-    depth = shapely.distance(hull.boundary, shapely.points(points))
+    edges = np.diff(hull, axis=0)  # clockwise: outwards is to the left
+    outwards = np.column_stack([-edges[:, 1], edges[:, 0]]) / np.hypot(*edges.T)[:, None]
+    depth = -(np.vstack([a.points, b.points]) @ outwards.T - (hull[:-1] * outwards).sum(axis=1)).max(axis=1)
     return bool(np.mean(depth > HULL_SPREADS * spread + HULL_CELLS) <= INSIDE_HULL)
 
 
 def _apart(a: Group, b: Group) -> float:
     """Return how far the boxes around two groups are apart, metres."""
-    (low, high), (other_low, other_high) = a.box, b.box
-    return float(np.max(np.maximum(low - other_high, other_low - high)))
+    gaps = a.hull.min(axis=0) - b.hull.max(axis=0), b.hull.min(axis=0) - a.hull.max(axis=0)
+    return float(np.max(gaps))
