@@ -50,6 +50,17 @@ class Grid:
         # Keys of the occupied cells, sorted, each once, and the scan that hit each last: one value, changed at once.
         self._occupied = np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
 
+    @classmethod
+    def of(cls, cells: Ints, last_seen: Ints, resolution: float) -> Grid:
+        """Return a grid of cells, shape (N, 2), in the order of ``cells``, and the scan that hit each last.
+
+        >>> Grid.of(np.array([(3, 5)]), np.array([2]), 0.001).last_seen.tolist()
+        [2]
+        """
+        grid = cls(resolution)
+        grid._occupied = as_keys(cells), last_seen
+        return grid
+
     def add(self, seen: Scans | ArrayLike) -> None:
         """Occupy the cells that the hits of scans (or plain points, shape (N, 2), metres) fall into.
 

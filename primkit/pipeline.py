@@ -32,7 +32,8 @@ from .grid import Grid
 from .measure import CELL, Detection, Frame, Thing, detection
 from .paper import CIRCLE_TRIALS, LINE_TRIALS, ON_LINE, one_start_kmeans, shape_as_published
 from .robust.candidates import MOST_POINTS
-from .robust.regroup import WORK_OF_A_TRY, Group, Opinion, explained, grown, regrouped
+from .robust.choice import Choice, explained, grown
+from .robust.regroup import WORK_OF_A_TRY, Opinion, regrouped
 from .robust.scatter import LEAST_SPREAD, SIGMAS, noise_of, spread_across, spread_from_median, spread_of
 from .segmentation import Grouping, check_count, count_by_silhouette, segment
 from .shapes import KINDS, Kind
@@ -40,7 +41,7 @@ from .steps import Steps
 from .table import Table
 
 # Groups as they were measured last, by their points: the warm starts of the next look at a map that grows.
-WarmStarts = dict[tuple[bytes, float, int, bool, bool, tuple[str, ...]], Group]
+WarmStarts = dict[tuple[bytes, float, int, bool, bool, tuple[str, ...]], Choice]
 
 SAME_SPREAD = 1.25  # fits are done anew when the spread comes out farther than this from what was supposed
 CONTRADICTED = 1.5  # neighbours scatter less than their noise lets them, if anything
@@ -217,7 +218,7 @@ def find_again(
         together = [points for points in together if not account.by_chance(points)]  # strays, not to be explained
         groups, margins, bounded = _jointly(together, n_shapes, settings, kinds, warm, measure_rng)
         for group, margin in zip(groups, margins, strict=True):
-            for thing in things_of(group.choice, margin, account):
+            for thing in things_of(group, margin, account):
                 if isinstance(thing, Detection):
                     thing = replace(thing, noise_std=min(settings.noise_std or 0.0, noise_of(group.spread)))
                 own = steps.remeasured(thing, SIGMAS * group.spread) if isinstance(thing, Detection) else thing
@@ -262,19 +263,19 @@ def _jointly(
     kinds: tuple[Kind, ...],
     warm: WarmStarts,
     rng: np.random.Generator,
-) -> tuple[list[Group], list[float], bool]:
+) -> tuple[list[Choice], list[float], bool]:
     """Explain each group, and ask for a second opinion on the groups: the default way; tell if a bound was reached."""
     seed = int(rng.integers(2**63))
     how = (seed, settings.soft, settings.thorough, kinds)
     used: WarmStarts = {}
 
-    def explain(points: Floats, spread: float) -> Group:
+    def explain(points: Floats, spread: float) -> Choice:
         key = (points.tobytes(), spread, *how)
         if key not in used:
             used[key] = warm[key] if key in warm else refitted(points, spread)
         return used[key]
 
-    def refitted(points: Floats, spread: float) -> Group:
+    def refitted(points: Floats, spread: float) -> Choice:
         alike = (old for (_, *before), old in warm.items() if before == [spread, *how])
         again = (grown(old, points, spread, soft=settings.soft) for old in alike)
         group = next((group for group in again if group is not None), None)
@@ -300,8 +301,8 @@ def _jointly(
 
 
 def _explain_all(
-    together: list[Floats], settings: Settings, last: float | None, explain: Callable[[Floats, float], Group]
-) -> tuple[list[Group], float]:
+    together: list[Floats], settings: Settings, last: float | None, explain: Callable[[Floats, float], Choice]
+) -> tuple[list[Choice], float]:
     """Explain each group; the spread is told, or found from the points or the last call, and then from the fits.
 
     What is told is not believed where neighbours scatter much farther.
@@ -329,9 +330,9 @@ def _in_steps(spread: float) -> float:
     return float(LEAST_SPREAD * np.exp(step * round(np.log(spread / LEAST_SPREAD) / step)))
 
 
-def _spread_of_fits(groups: list[Group]) -> float | None:
+def _spread_of_fits(groups: list[Choice]) -> float | None:
     """Return how far the points lie from the shapes that explain them; None without shapes."""
-    distances = [g.choice.distance for g in groups if g.shape is not None]
+    distances = [g.distance for g in groups if g.shape is not None]
     if not distances:
         return None
     return spread_from_median(float(np.median(np.abs(np.concatenate(distances)))))

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import primkit as pk
 from primkit.pipeline import find_again
 from primkit.robust import candidates as bounded
-from primkit.robust import choice, regroup
+from primkit.robust import choice
 from primkit.robust.candidates import candidates, explained_again
 from primkit.robust.cuts import best_cuts, by_bearing, chords, in_company, outlines_with
 from primkit.robust.scatter import LEAST_SPREAD, spread_across
@@ -109,15 +109,17 @@ def test_the_order_of_the_points_leaves_no_trace_on_the_kind():
 
 
 def test_rivals_are_fitted_when_the_margin_is_asked_for_and_only_once(monkeypatch):
-    fitted = []
+    all_kinds = []
     real = choice.candidates
-    monkeypatch.setattr(choice, "candidates", lambda *a, **k: fitted.append(1) or real(*a, **k))
+    monkeypatch.setattr(
+        choice, "candidates", lambda *a, **k: all_kinds.append(k.get("thorough", True)) or real(*a, **k)
+    )
     points = points_of(pk.World([pk.Circle((0.1, 0.0), 0.06)]))
     (found,) = pk.find_shapes(points, rng=0)
-    assert fitted == []
+    assert all_kinds == [False]
     margin = found.margin
     assert found.margin == margin
-    assert fitted == [1]
+    assert all_kinds == [False, True]
     (thorough,) = pk.find_shapes(points, settings=THOROUGH, rng=0)
     assert margin == pytest.approx(thorough.margin, rel=1e-3)
     assert margin > 100
@@ -191,17 +193,17 @@ def test_what_grows_by_a_few_points_is_fitted_anew_from_what_it_was(kind):
 def test_what_has_come_into_doubt_is_not_grown():
     """Points beside the outline, or a stretch that is no longer there, are looked at anew."""
     ring = pk.Circle((0, 0), 0.05).outline(200)
-    old = regroup.explained(ring, LEAST_SPREAD, thorough=False)
+    old = choice.explained(ring, LEAST_SPREAD, thorough=False)
     beside = pk.Circle((0, 0), 0.044).outline(10)
-    assert regroup.grown(old, np.vstack([ring, beside[:2]]), LEAST_SPREAD) is not None
-    assert regroup.grown(old, np.vstack([ring, beside]), LEAST_SPREAD) is None
-    assert regroup.grown(old, ring[:150], LEAST_SPREAD) is None
+    assert choice.grown(old, np.vstack([ring, beside[:2]]), LEAST_SPREAD) is not None
+    assert choice.grown(old, np.vstack([ring, beside]), LEAST_SPREAD) is None
+    assert choice.grown(old, ring[:150], LEAST_SPREAD) is None
 
 
 def test_a_growing_group_is_not_looked_at_anew(monkeypatch):
     looks = []
-    real = regroup.candidates
-    monkeypatch.setattr(regroup, "candidates", lambda *a, **k: looks.append(1) or real(*a, **k))
+    real = choice.candidates
+    monkeypatch.setattr(choice, "candidates", lambda *a, **k: looks.append(1) or real(*a, **k))
     ring = pk.Circle((0.1, 0.0), 0.06).outline(200)
     warm = {}
     for n in (190, 195, 200):

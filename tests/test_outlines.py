@@ -74,3 +74,24 @@ def test_joined_keeps_the_order_and_selecting_selects():
     both = joined(one, two)
     assert len(both) == 2
     assert both[1:].offsets.tolist() == two.offsets.tolist()
+
+
+def of_corners(*corners):
+    """Return the outline with these corners, shape (K, 2), counter-clockwise."""
+    first, (x, y) = np.array(corners), (np.roll(corners, -1, axis=0) - corners).T
+    angles = np.arctan2(-x, y)
+    return Outlines(angles[None], (np.cos(angles) * first[:, 0] + np.sin(angles) * first[:, 1])[None])
+
+
+def test_a_star_closes_though_it_is_not_convex():
+    star = of_corners((0, -0.03), (0.1, -0.1), (0.03, 0), (0.1, 0.1), (-0.1, 0))
+    assert star.closes(0.01).tolist() == [True]
+    assert star.sound().tolist() == [False]
+
+
+def test_what_runs_round_once_and_crosses_itself_does_not_close():
+    """Two loops that turn against each other leave one turn in all."""
+    knot = of_corners((0.1, 0.2), (0.1, 0.1), (0, 0.2), (0, 0.1), (0.2, 0.2), (0.2, 0.3))
+    turns = np.mod(np.diff(knot.angles[0], append=knot.angles[0, 0]) + np.pi, 2 * np.pi) - np.pi
+    assert turns.sum() == pytest.approx(2 * np.pi)
+    assert knot.closes(0.01).tolist() == [False]

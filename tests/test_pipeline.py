@@ -8,7 +8,7 @@ import pytest
 import primkit as pk
 from primkit.arguments import LikelyWrong
 from primkit.pipeline import _explain_all
-from primkit.robust.regroup import explained
+from primkit.robust.choice import explained
 from primkit.robust.scatter import spread_of
 
 

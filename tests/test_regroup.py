@@ -5,7 +5,8 @@ import pytest
 
 import primkit as pk
 from primkit.robust import regroup
-from primkit.robust.regroup import cost_of, explained
+from primkit.robust.choice import explained
+from primkit.robust.regroup import cost_of
 from primkit.robust.scatter import LEAST_SPREAD, NOWHERE
 
 RECTANGLE = pk.Polygon([(-0.1, -0.04), (0.1, -0.04), (0.1, 0.04), (-0.1, 0.04)])
@@ -145,7 +146,7 @@ def test_a_half_is_certain_only_beside_a_certain_half():
     arc = CIRCLE.outline(200)
     together = np.vstack([RECTANGLE.outline(300), arc[arc[:, 0] > CIRCLE.center[0]]])
     groups, margins = regroup.regrouped(groups_of(together), LEAST_SPREAD)
-    of = {group.shape.kind: (group.choice.certain, margin) for group, margin in zip(groups, margins, strict=True)}
+    of = {group.shape.kind: (group.certain, margin) for group, margin in zip(groups, margins, strict=True)}
     assert sorted(certain for certain, _ in of.values()) == [False, True]
     assert of["rectangle"][1] <= 0
 
@@ -153,8 +154,8 @@ def test_a_half_is_certain_only_beside_a_certain_half():
 def test_where_many_points_lie_beside_it_no_shape_is_certain():
     """They may be something else."""
     rng, outline = np.random.default_rng(0), RECTANGLE.outline(300)
-    assert explained(outline, LEAST_SPREAD).choice.certain
+    assert explained(outline, LEAST_SPREAD).certain
     beside = RECTANGLE.outline(60) * 1.15 + rng.uniform(-0.004, 0.004, (60, 2))
-    choice = explained(np.vstack([outline, beside]), LEAST_SPREAD).choice
+    choice = explained(np.vstack([outline, beside]), LEAST_SPREAD)
     assert choice.shape.kind == "rectangle"
     assert not choice.certain

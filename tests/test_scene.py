@@ -16,7 +16,7 @@ from primkit.found import Found
 from primkit.measure import Detection, Other, Wall
 from primkit.robot import AXLE, FASTEST, WHEEL, clearance
 from primkit.robust.deviations import Certainty
-from primkit.scene.finder import MOST_CELLS, Beside, Finder, thin_out
+from primkit.scene.finder import MOST_CELLS, AtOnce, Beside, Finder, thin_out
 from primkit.scene.keys import KEY_MOTIONS, STANDING_WHEELS, wheels_for
 from primkit.scene.moved_shape import LEAST_MOVED, find_left_within, move_one_shape
 from primkit.scene.page import describe, describe_shape
@@ -252,6 +252,19 @@ def test_what_is_looked_at_grows_with_the_map():
         assert not (all_of_them[:n] & ~fewer).any()
     near = thin_out(cells[: len(cells) - 10], 1000)
     np.testing.assert_array_equal(near, all_of_them[:-10])
+
+
+def test_thinned_out_cells_know_the_scans_that_hit_them_last(world):
+    """Poses slip scan by scan: a look at a part of the cells that knew no scans would state other deviations."""
+    mapper = pk.Mapper(rng=0)
+    mapper.add(pk.scan(world, pk.teleport_poses(world)))
+    looked_at = []
+    mapper.look = lambda grid: looked_at.append(grid) or Found()
+    Finder(AtOnce()).look(mapper, n_scans=72, most=100)
+    (part,) = looked_at
+    whole = {tuple(cell): seen for cell, seen in zip(mapper.grid.cells.tolist(), mapper.grid.last_seen, strict=True)}
+    assert 50 < len(part) <= 100
+    assert [whole[tuple(cell)] for cell in part.cells.tolist()] == part.last_seen.tolist()
 
 
 def test_in_the_end_it_does_not_matter_how_long_looks_took(world):

@@ -7,7 +7,7 @@ Out: ``Choice``: the shape, the points that lie on it, its standard deviations, 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -16,14 +16,18 @@ from numpy.typing import NDArray
 from ..arguments import Floats, Ints
 from ..circles import straightened
 from ..lines import Line
-from ..shapes import KINDS, Circle, Shape
-from .candidates import candidates, free_candidate
+from ..seen import seen_shares
+from ..shapes import KINDS, Circle, Polygon, Shape
+from .candidates import candidates, explained_again, free_candidate
 from .deviations import Certainty, certainty
 from .evidence import CERTAIN, NEARLY_ALL, Candidate
 from .lack_of_fit import lack_of_fit
 from .outlines import LEAST_SIDE
 from .scatter import SIGMAS, depth_of, noise_of
 
+FEW_NEW = 0.1  # share of new points up to which a group is fitted anew from what it was
+FEW_OFF = 0.02  # share of the points by which more may lie beside a group's shape then
+SURE = 30.0  # margin up to which a few points more may change what a group is
 MOST_SEEN = 0.75  # share of each side; behind more there may be something else
 
 
@@ -45,6 +49,8 @@ class Choice:
         Whether all rivals were fitted, and not only those that came into question.
     kinds : sequence of str
         The kinds that can be there; others are no rivals.
+    n_thorough : int
+        How many points there were when all explanations were looked for.
     """
 
     points: Floats
@@ -53,6 +59,7 @@ class Choice:
     soft: bool = True
     thorough: bool = True
     kinds: Sequence[str] = KINDS
+    n_thorough: int = 0
 
     @cached_property
     def shape(self) -> Shape | None:
@@ -87,6 +94,23 @@ class Choice:
         return certainty(
             figure.moved(-middle), points - middle, self.spread, square=best.square, scans=scans, noise_std=noise_std
         )
+
+    @cached_property
+    def hull(self) -> Floats:
+        """The corners of the convex hull of the points, shape (M, 2), metres."""
+        import shapely
+
+        return np.asarray(shapely.get_coordinates(shapely.MultiPoint(self.points).convex_hull))
+
+    @cached_property
+    def closed(self) -> bool:
+        """Whether the best explanation's outline was seen nearly all around."""
+        shape = self.shape
+        if shape is None:
+            return False
+        lengths = shape.sides if isinstance(shape, Polygon) else [shape.perimeter]
+        seen = self.ranked[0].seen  # by those points alone that lie on it; or else by all
+        return any(np.average(each, weights=lengths) >= NEARLY_ALL for each in (seen, seen_shares(shape, self.points)))
 
     @property
     def lead(self) -> float:
@@ -140,3 +164,44 @@ class Choice:
             and large >= LEAST_SIDE
             and self.margin >= CERTAIN  # the last, for it fits the rivals that were not
         )
+
+
+def explained(
+    points: Floats,
+    spread: float,
+    *,
+    soft: bool = True,
+    thorough: bool = True,
+    kinds: Sequence[str] = KINDS,
+) -> Choice:
+    """Return the points with all their explanations; or, if not to be thorough, with those that may win.
+
+    Walls, and those of the kinds that can be there, are explanations.
+    """
+    ranked = candidates(points, spread, soft=soft, thorough=thorough, kinds=kinds)
+    return Choice(points, ranked, spread, soft, thorough, kinds, len(points))
+
+
+def grown(old: Choice, points: Floats, spread: float, *, soft: bool = True) -> Choice | None:
+    """Return a choice for a group that has a few points more than it had, its explanation fitted anew from what it was.
+
+    Returns
+    -------
+    Choice or None
+        None where all explanations should be looked for: many points are new, others are gone, what the group is was
+        in doubt, or it is so now.
+    """
+    in_doubt = not old.ranked or old.lead < SURE
+    if in_doubt or not 1 <= len(points) / old.n_thorough <= 1 + FEW_NEW or not _holds(points, old.points):
+        return None
+    ranked = explained_again(points, old.ranked, spread, soft=soft)
+    anew = replace(old, points=points, ranked=ranked)
+    if not ranked or ranked[0].kind != old.ranked[0].kind or anew.lead < SURE:
+        return None
+    return anew if anew.on_it.mean() >= old.on_it.mean() - FEW_OFF else None
+
+
+def _holds(points: Floats, fewer: Floats) -> bool:
+    """Tell whether all of the fewer points are among the points; in both no point stands twice."""
+    one, other = (np.ascontiguousarray(p).view(complex) for p in (fewer, points))  # a point as one number: 5 x faster
+    return bool(np.isin(one, other).all())

@@ -77,14 +77,7 @@ def free_outline(points: Floats, spread: float) -> Outlines | None:
         if (distance <= SIGMAS * spread).mean() >= 0.98:
             break
         kept = points[distance <= FAR_SPREADS * spread + FAR_CELLS * CELL]
-    return found if found is not None and crosses_nowhere(found) else None
-
-
-def crosses_nowhere(outline: Outlines) -> bool:
-    """Tell whether the first outline neither crosses nor touches itself."""
-    import shapely
-
-    return outline.convex or bool(shapely.LinearRing(outline.corners()[0]).is_simple)
+    return found
 
 
 def _pruned(points: Floats, outline: Outlines, spread: float, least: float) -> Outlines:

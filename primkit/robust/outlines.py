@@ -116,12 +116,20 @@ class Outlines:
         return once_round & bends & (end - begin >= np.where(plank, LEAST_PLANK, LEAST_SIDE)).all(axis=1)
 
     def closes(self, least: float) -> NDArray[np.bool_]:
-        """Tell which outlines run round once, convex or not, with corners that bend and no side below ``least`` [m]."""
+        """Tell which outlines run round once and cross themselves nowhere, with bends, and no side below ``least`` [m].
+
+        They need not be convex.
+        """
+        import shapely
+
         turn = np.mod(_after(self.angles) - self.angles + np.pi, 2 * np.pi) - np.pi
         begin, end = self.spans()
         once_round = np.abs(turn.sum(axis=1) - 2 * np.pi) < 1e-6
         bends = ((np.abs(turn) >= LEAST_BEND) & (np.abs(turn) <= MOST_BEND)).all(axis=1)
-        return once_round & bends & (end - begin >= least).all(axis=1)
+        closed = once_round & bends & (end - begin >= least).all(axis=1)
+        if closed.any():
+            closed &= shapely.is_simple(shapely.linearrings(self.corners()))
+        return closed
 
     @cached_property
     def convex(self) -> bool:

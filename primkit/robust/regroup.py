@@ -21,8 +21,8 @@ extending K-means with efficient estimation of the number of clusters".
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from dataclasses import dataclass, field
+from functools import partial
 from itertools import combinations
 
 import numpy as np
@@ -30,16 +30,14 @@ from numpy.typing import NDArray
 
 from ..arguments import Floats
 from ..lines import fit_line
-from ..seen import seen_shares
 from ..segmentation import LEAST_GROUP, LINK, kmeans, link
-from ..shapes import KINDS, Polygon, Shape
-from .candidates import MOST_POINTS, candidates, explained_again
-from .choice import Choice
-from .evidence import CERTAIN, NEARLY_ALL, Candidate, joint_cost
+from .candidates import MOST_POINTS
+from .choice import Choice, explained
+from .evidence import CERTAIN, NEARLY_ALL, joint_cost
 from .outlines import Outlines
 from .scatter import NOWHERE, SIGMAS
 
-Explain = Callable[[Floats], "Group"]
+Explain = Callable[[Floats], Choice]
 
 # At most so many points are explained, and each try counts as so many more: about two seconds' work.
 MOST_WORK, WORK_OF_A_TRY = 100_000, 250
@@ -49,53 +47,16 @@ HULL_SPREADS, HULL_CELLS = 6.0, 0.002  # the hull runs along the outermost point
 FINER_LINKS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0)  # a group is cut where it falls apart first, linked so much more finely
 MOST_JOINTS = 3  # ways to cut an outline between two corners
 JOINT_COST = 40.0  # two shapes seldom stand so close that nothing is seen between them
-FEW_NEW = 0.1  # share of new points up to which a group is fitted anew from what it was
-FEW_OFF = 0.02  # share of the points by which more may lie beside a group's shape then
-SURE = 30.0  # margin up to which a few points more may change what a group is
 INSIDE_HULL = 0.05  # share of points that may lie inside a hull which should be an outline
-
-
-@dataclass(frozen=True, eq=False)
-class Group:
-    """Points that belong together, with their explanations, the best first, at a spread in metres."""
-
-    points: Floats
-    ranked: list[Candidate]
-    spread: float
-    n_thorough: int  # how many points it had when all explanations were looked for
-    choice: Choice
-
-    @property
-    def shape(self) -> Shape | None:
-        """The best explanation's shape; None for a bare wall or too few points."""
-        return self.ranked[0].shape if self.ranked else None
-
-    @cached_property
-    def hull(self) -> Floats:
-        """The corners of the convex hull of the points, shape (M, 2), metres."""
-        import shapely
-
-        return np.asarray(shapely.get_coordinates(shapely.MultiPoint(self.points).convex_hull))
-
-    @cached_property
-    def closed(self) -> bool:
-        """Whether the best explanation's outline was seen nearly all around."""
-        shape = self.shape
-        if shape is None:
-            return False
-        lengths = shape.sides if isinstance(shape, Polygon) else [shape.perimeter]
-        if np.average(self.ranked[0].seen, weights=lengths) >= NEARLY_ALL:  # by those points alone that lie on it
-            return True
-        return bool(np.average(seen_shares(shape, self.points), weights=lengths) >= NEARLY_ALL)
 
 
 @dataclass(frozen=True)
 class _Tried:
     """What was tried: how groups would split, what pairs would merge into, and by how much a group won."""
 
-    halves: dict[Group, tuple[Group, ...]] = field(default_factory=dict)
-    unions: dict[tuple[Group, Group], Group] = field(default_factory=dict)
-    won_by: dict[Group, float] = field(default_factory=dict)
+    halves: dict[Choice, tuple[Choice, ...]] = field(default_factory=dict)
+    unions: dict[tuple[Choice, Choice], Choice] = field(default_factory=dict)
+    won_by: dict[Choice, float] = field(default_factory=dict)
 
 
 @dataclass
@@ -113,7 +74,7 @@ class Opinion:
     explain: Explain
     work: int = 0
 
-    def __call__(self, points: Floats) -> Group:
+    def __call__(self, points: Floats) -> Choice:
         """Explain points, shape (N, 2), metres."""
         self.work += len(points) + WORK_OF_A_TRY
         return self.explain(points)
@@ -124,65 +85,24 @@ class Opinion:
         return self.work > MOST_WORK
 
 
-def cost_of(groups: Sequence[Group]) -> float:
+def cost_of(groups: Sequence[Choice]) -> float:
     """Return the cost of the groups' best explanations together; points too few for any come from nowhere."""
     strays = sum(len(g.points) for g in groups if not g.ranked)
     return joint_cost([g.ranked[0] for g in groups if g.ranked]) - 2 * strays * float(np.log(NOWHERE))
 
 
-def explained(
-    points: Floats,
-    spread: float,
-    *,
-    soft: bool = True,
-    thorough: bool = True,
-    kinds: Sequence[str] = KINDS,
-) -> Group:
-    """Return the points with all their explanations; or, if not to be thorough, with those that may win.
-
-    Walls, and those of the kinds that can be there, are explanations.
-    """
-    ranked = candidates(points, spread, soft=soft, thorough=thorough, kinds=kinds)
-    return Group(points, ranked, spread, len(points), Choice(points, ranked, spread, soft, thorough, kinds))
-
-
-def grown(old: Group, points: Floats, spread: float, *, soft: bool = True) -> Group | None:
-    """Return a group that has a few points more than it had, its explanation fitted anew from what it was.
-
-    Returns
-    -------
-    Group or None
-        None where all explanations should be looked for: many points are new, others are gone, what the group is was
-        in doubt, or it is so now.
-    """
-    in_doubt = not old.ranked or old.choice.lead < SURE
-    if in_doubt or not 1 <= len(points) / old.n_thorough <= 1 + FEW_NEW or not _holds(points, old.points):
-        return None
-    ranked = explained_again(points, old.ranked, spread, soft=soft)
-    group = Group(points, ranked, spread, old.n_thorough, replace(old.choice, points=points, ranked=ranked))
-    if not ranked or ranked[0].kind != old.ranked[0].kind or group.choice.lead < SURE:
-        return None
-    return group if group.choice.on_it.mean() >= old.choice.on_it.mean() - FEW_OFF else None
-
-
-def _holds(points: Floats, fewer: Floats) -> bool:
-    """Tell whether all of the fewer points are among the points; in both no point stands twice."""
-    one, other = (np.ascontiguousarray(p).view(complex) for p in (fewer, points))  # a point as one number: 5 x faster
-    return bool(np.isin(one, other).all())
-
-
 def regrouped(
-    groups: Sequence[Group],
+    groups: Sequence[Choice],
     spread: float,
     n_shapes: int | None = None,
     *,
     explain: Opinion | None = None,
-) -> tuple[list[Group], list[float]]:
+) -> tuple[list[Choice], list[float]]:
     """Split and merge groups as long as that explains the points better, within a bound of work.
 
     Parameters
     ----------
-    groups : sequence of Group
+    groups : sequence of Choice
         As segmentation left them.
     spread : float
         Standard deviation of the points from the outlines, metres.
@@ -193,7 +113,7 @@ def regrouped(
 
     Returns
     -------
-    groups : list of Group
+    groups : list of Choice
         As many as asked for, as far as the points allow; else as many as explain the points best.
     margins : list of float
         For each group, how much better it explains the points than the best grouping in which it is split or
@@ -208,21 +128,21 @@ def regrouped(
     return groups, [_margin(g, groups, tried) for g in groups]
 
 
-def _margin(group: Group, groups: list[Group], tried: _Tried) -> float:
+def _margin(group: Choice, groups: list[Choice], tried: _Tried) -> float:
     """Return how much worse the best other grouping of a group's points is; infinite when none was tried."""
     others = [tried.won_by.get(group, float("inf")), _gain(tried.halves.get(group, ()), group)]
     for (a, b), union in tried.unions.items():
         if group in (a, b) and a in groups and b in groups:
             others.append(cost_of([union]) - cost_of([a, b]))
     split = next((parts for parts in tried.halves.values() if group in parts), ())
-    if any(part in groups and not part.choice.certain for part in split):
+    if any(part in groups and not part.certain for part in split):
         others.append(0.0)  # where the other half is in doubt, so is the cut
     return min(others)
 
 
 def _split_all(
-    groups: list[Group], spread: float, n_shapes: int | None, explain: Opinion, tried: _Tried
-) -> list[Group]:
+    groups: list[Choice], spread: float, n_shapes: int | None, explain: Opinion, tried: _Tried
+) -> list[Choice]:
     """Split the group that gains most by it, again and again."""
     limit = 0.0 if n_shapes is None else np.inf
     while n_shapes is None or len(groups) < n_shapes:
@@ -238,21 +158,22 @@ def _split_all(
     return groups
 
 
-def _gain(parts: tuple[Group, ...], group: Group) -> float:
+def _gain(parts: tuple[Choice, ...], group: Choice) -> float:
     """Return by how much the parts cost more than the whole, a joint that no beam met included; infinite without."""
     if not parts:
         return float("inf")
-    whole = group.choice.fit >= CERTAIN and not group.choice.inside.any()
+    whole = group.fit >= CERTAIN and not group.inside.any()
     return cost_of(parts) - cost_of([group]) + JOINT_COST * whole
 
 
-def _halves(group: Group, spread: float, n_shapes: int | None, explain: Explain) -> tuple[Group, ...]:
+def _halves(group: Choice, spread: float, n_shapes: int | None, explain: Explain) -> tuple[Choice, ...]:
     """Return a group as two; nothing when it is too small or too large, or well explained as it is."""
     if not group.ranked or not 2 * LEAST_GROUP <= len(group.points) <= MOST_POINTS:
         return ()
     figure = group.ranked[0].figure
-    plain = not group.choice.inside.any() and (not isinstance(figure, Outlines) or figure.convex)
-    if n_shapes is None and plain and _share_on_shape(group, spread) >= NEARLY_ALL:
+    plain = not group.inside.any() and (not isinstance(figure, Outlines) or figure.convex)
+    share = group.ranked[0].n_on / len(group.points) if group.shape is None else group.on_it.mean()
+    if n_shapes is None and plain and share >= NEARLY_ALL:  # no wall is two of anything either
         return ()
     ways = [parts for side in _sides(group, spread) if (parts := _parts(group.points, side, explain))]
     best = min(ways, key=cost_of, default=())
@@ -262,14 +183,14 @@ def _halves(group: Group, spread: float, n_shapes: int | None, explain: Explain)
     return best
 
 
-def _parts(points: Floats, side: NDArray[np.bool_], explain: Explain) -> tuple[Group, ...]:
+def _parts(points: Floats, side: NDArray[np.bool_], explain: Explain) -> tuple[Choice, ...]:
     """Return the points on either side, explained; nothing where they are too few."""
     if not LEAST_GROUP <= np.count_nonzero(side) <= len(side) - LEAST_GROUP:
         return ()
     return explain(points[~side]), explain(points[side])
 
 
-def _sides(group: Group, spread: float) -> list[NDArray[np.bool_]]:
+def _sides(group: Choice, spread: float) -> list[NDArray[np.bool_]]:
     """Return ways to cut a group in two: which points lie on one side, shape (N,).
 
     Where neighbours are farther apart than elsewhere; along the points inside it, which were seen through the mouth
@@ -281,7 +202,7 @@ def _sides(group: Group, spread: float) -> list[NDArray[np.bool_]]:
         place = figure.places(points)[0]
         ways += [(first < place) & (place <= last) for first, last in _joints(figure)]
     ways = ways or [kmeans(points, 2, rng=0) > 0]
-    if (mouth := fit_line(points[group.choice.inside])) is not None:
+    if (mouth := fit_line(points[group.inside])) is not None:
         beyond, reach = mouth.signed_distance(points), SIGMAS * spread
         ways += [beyond > reach, beyond > -reach]  # what lies on it is a side of the one or of the other
     for finer in FINER_LINKS:
@@ -316,18 +237,11 @@ def _turns(corners: Floats) -> Floats:
     return np.mod(np.roll(angles, -1) - angles + np.pi, 2 * np.pi) - np.pi
 
 
-def _share_on_shape(group: Group, spread: float) -> float:
-    """Return the share of a group's points that lie on its best shape, or on its wall: no wall is two of anything."""
-    if group.shape is None:
-        return group.ranked[0].n_on / len(group.points)
-    return float(np.mean(np.abs(group.choice.distance) <= SIGMAS * spread))
-
-
 def _merge_all(
-    groups: list[Group], spread: float, n_shapes: int | None, explain: Opinion, tried: _Tried
-) -> list[Group]:
+    groups: list[Choice], spread: float, n_shapes: int | None, explain: Opinion, tried: _Tried
+) -> list[Choice]:
     """Merge the two groups that gain most by it, again and again."""
-    asked = set[tuple[Group, Group]]()
+    asked = set[tuple[Choice, Choice]]()
     while len(groups) > (n_shapes or 1):
         best, best_gain = None, 0.0 if n_shapes is None else np.inf
         for a, b in combinations(groups, 2):
@@ -346,7 +260,7 @@ def _merge_all(
     return groups
 
 
-def _may_be_one(a: Group, b: Group, spread: float) -> bool:
+def _may_be_one(a: Choice, b: Choice, spread: float) -> bool:
     """Tell quickly whether two groups can be pieces of one convex outline.
 
     One of them must be open, and the points of both must lie along the hull of both.
@@ -364,7 +278,7 @@ def _may_be_one(a: Group, b: Group, spread: float) -> bool:
     return bool(np.mean(depth > HULL_SPREADS * spread + HULL_CELLS) <= INSIDE_HULL)
 
 
-def _apart(a: Group, b: Group) -> float:
+def _apart(a: Choice, b: Choice) -> float:
     """Return how far the boxes around two groups are apart, metres."""
     gaps = a.hull.min(axis=0) - b.hull.max(axis=0), b.hull.min(axis=0) - a.hull.max(axis=0)
     return float(np.max(gaps))

@@ -155,8 +155,8 @@ class Finder:
         if self._under_way is None:
             grid = copy(mapper.grid)
             if len(grid) > most:
-                grid = Grid(grid.resolution)
-                grid.add(mapper.grid.points()[thin_out(mapper.grid.cells, most)])
+                which = thin_out(grid.cells, most)
+                grid = Grid.of(grid.cells[which], grid.last_seen[which], grid.resolution)
             self._under_way = self._executor.submit(lambda: Look.at(mapper.look(grid), n_scans, judge))
 
     def news(self, *, wait: bool = False) -> Look | None:

@@ -192,10 +192,10 @@ MUTANTS = (
         (*CUTS, "test_circles.py"),
     ),
     Mutant(
-        "the first cut behind the widest gap",
+        "the first cut where the points are farthest",
         "robust/cuts.py",
-        "if gap.max() > unseen:",
-        "if False:",
+        "np.minimum(ring[:-2], ring[2:])).argmax())",
+        "np.minimum(ring[:-2], ring[2:])).argmin())",
         CUTS,
     ),
     # --- free ---
@@ -208,10 +208,10 @@ MUTANTS = (
     ),
     Mutant(
         "an outline crosses itself nowhere",
-        "robust/free.py",
-        "if found is not None and crosses_nowhere(found) else",
-        "if found is not None else",
-        ("test_unknown.py",),
+        "robust/outlines.py",
+        "closed &= shapely",
+        "closed | shapely",
+        ("test_outlines.py",),
     ),
 )
 
