@@ -112,6 +112,10 @@ class Scans:
         bearing, reach = self.poses[pose, 2] + self.angles[beam], self.ranges[pose, beam]
         return self.poses[pose, :2] + reach[:, None] * np.column_stack([np.cos(bearing), np.sin(bearing)])
 
+    def scaled(self, k: float) -> Scans:
+        """Return the scans of a board k times as large, from places k times as far from its centre."""
+        return _checked_before(self.poses * (k, k, 1.0), self.angles, self.ranges * k, self.inside)
+
     def __len__(self) -> int:
         return len(self.poses)
 
@@ -193,7 +197,8 @@ def scan(
     world : World
     poses : array_like, shape (P, 3)
         x [m], y [m], heading [rad], world frame; one pose alone may have shape (3,).
-    lidar : Lidar, default Lidar()
+    lidar : Lidar, optional
+        The paper's, of the board's scale, when not given.
     rng : seed or numpy.random.Generator, optional
         For noise, dropouts and spurious returns.
 
@@ -238,7 +243,7 @@ def _scanned(
     world: World, poses: Floats, lidar: Lidar | None, rng: int | np.random.Generator | None, size: int
 ) -> Iterator[Scans]:
     """Check the other arguments and return the blocks."""
-    lidar = as_lidar(lidar)
+    lidar = as_lidar(lidar, world.scale)
     faults = Faults(lidar, len(poses), min(size, SCANS_AT_ONCE), rng)
     starts = range(0, max(1, len(poses)), size)
     return (_block(world, poses[start : start + size], lidar, faults) for start in starts)

@@ -17,6 +17,8 @@ Two wheels at speeds l and r [rad/s], of radius R, at a distance A from each oth
 v = R (l + r) / 2 and turn at w = R (r - l) / A. While they are held, it goes along an arc: in the time t it turns by
 w t, and comes v t sin(w t / 2) / (w t / 2) far, in the direction midway between the old heading and the new one.
 
+All lengths here are those of the paper's board, and follow the scale of another, ``World.scale``.
+
 Source: the paper's section 3.2, "Robot Movement", with the numbers of its published code.
 """
 
@@ -26,7 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .arguments import Bools, Floats, as_point, as_points, as_poses, as_positive, check_type, limit, short
-from .world import World
+from .world import World, scale_of
 
 STEP_X = 0.15  # m between way-points along x
 STEP_Y = 0.10  # m between way-points along y
@@ -39,25 +41,26 @@ BODY = 0.037  # m: radius of the body, a disc around the middle of the axle
 PUBLISHED_HEADING = np.radians(0.15)  # in all of the paper's runs
 PERIOD = 0.1  # s: wheels keep their speeds from one scan to the next
 CLEAR = 0.0001  # m: so long are the steps in which a way is looked at, and so far the body keeps from everything
-# What grows with a board's side or with time, and would fill the memory: boards of 120 m, drives of two kilometres.
-MOST_PLACES, MOST_STEPS = 1_000_000, 20_000_000
+# What grows with time, and would fill the memory.
+MOST_PLACES, MOST_STEPS = 1_000_000, 20_000_000  # on one way, and on a drive of two kilometres
 
 
 def waypoints(size: float = 1.0) -> Floats:
     """Return the paper's way-points for a board of ``size`` metres, shape (P, 3).
 
     x runs from ``-size/2`` in steps of 0.15 m up to ``size/2 - 0.1`` m, y from ``-size/2`` to ``size/2``
-    in steps of 0.10 m, column by column; the heading is 0. A board of 1 m has 7 x 11 = 77 of them.
+    in steps of 0.10 m, column by column; the heading is 0. A board of 1 m has 7 x 11 = 77 of them, and so has one of
+    10 m: all follows the board's scale.
 
     >>> waypoints()[[0, 1, -1]].round(3).tolist()
     [[-0.5, -0.5, 0.0], [-0.5, -0.4, 0.0], [0.4, 0.5, 0.0]]
     """
-    half = as_positive(size, "size") / 2
-    check_places(size, STEP_X * STEP_Y)
+    scale = scale_of(as_positive(size, "size"))
+    half = size / scale / 2
     columns = np.arange(np.floor((2 * half - STOP_X) / STEP_X + 1e-9) + 1)  # 1e-9: 0.9 / 0.15 is 6, not 5.99
     rows = np.arange(np.floor(2 * half / STEP_Y + 1e-9) + 1)
     x, y = np.meshgrid(-half + STEP_X * columns, -half + STEP_Y * rows, indexing="ij")
-    return np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
+    return np.column_stack([scale * x.ravel(), scale * y.ravel(), np.zeros(x.size)])
 
 
 def published_poses(size: float = 1.0) -> Floats:
@@ -105,14 +108,15 @@ def _on_board(world: World) -> tuple[Floats, Floats]:
     poses = waypoints(world.size)
     barred = inside_shape(world, poses)
     if world.walled:
-        barred |= world.size / 2 - np.abs(poses[:, :2]).max(axis=1) < BODY
+        barred |= world.size / 2 - np.abs(poses[:, :2]).max(axis=1) < BODY * world.scale
     return poses[~barred], poses[barred]
 
 
-def moved(poses: ArrayLike, wheels: ArrayLike, time: float | Floats) -> Floats:
+def moved(poses: ArrayLike, wheels: ArrayLike, time: float | Floats, scale: float = 1.0) -> Floats:
     """Return where robots are after their wheels have turned for a while, with nothing in the way, shape as ``poses``.
 
-    ``wheels``, shape (..., 2): speeds of the left and the right wheel, rad/s; ``time``, shape (...), seconds.
+    ``wheels``, shape (..., 2): speeds of the left and the right wheel, rad/s; ``time``, shape (...), seconds;
+    ``scale``: how many times as large as the paper's the robots are.
 
     Wheels at equal and opposite speeds turn it on the spot:
 
@@ -121,7 +125,8 @@ def moved(poses: ArrayLike, wheels: ArrayLike, time: float | Floats) -> Floats:
     """
     pose, (left, right) = np.asarray(poses, dtype=float), np.moveaxis(np.asarray(wheels, dtype=float), -1, 0)
     turn = WHEEL * (right - left) / AXLE * time
-    way = WHEEL * (right + left) / 2 * time * np.sinc(turn / (2 * np.pi))  # numpy's sinc(x) is sin(pi x) / (pi x)
+    speed = scale * WHEEL * (right + left) / 2
+    way = speed * time * np.sinc(turn / (2 * np.pi))  # numpy's sinc(x) is sin(pi x) / (pi x)
     bearing = pose[..., 2] + turn / 2
     step = np.stack(np.broadcast_arrays(way * np.cos(bearing), way * np.sin(bearing), turn), axis=-1)
     return pose + step
@@ -135,7 +140,7 @@ def clearance(world: World, places: Floats) -> Floats:
     free: Floats = world.size / 2 - np.abs(places).max(axis=1)
     for shape in world.shapes:
         free = np.minimum(free, shape.signed_distance(places))
-    return free - BODY
+    return free - BODY * world.scale
 
 
 def advance(world: World, pose: ArrayLike, wheels: ArrayLike, time: float = PERIOD) -> tuple[Floats, bool]:
@@ -153,14 +158,14 @@ def advance(world: World, pose: ArrayLike, wheels: ArrayLike, time: float = PERI
     (0.013, True)
     """
     check_type(world, World, "world must be a World")
-    here, speeds = _as_pose(pose), not_too_fast(as_point(wheels, "wheels"))
+    here, speeds, clear = _as_pose(pose), not_too_fast(as_point(wheels, "wheels")), CLEAR * world.scale
     seconds = as_positive(time, "time", zero=True)
     way = WHEEL * float(np.abs(speeds.sum())) / 2 * seconds
     limit(way / CLEAR, MOST_PLACES, "a way must take at most {} steps of 0.1 mm", "is the time in seconds?")
     times = np.linspace(0, seconds, 2 + int(way / CLEAR))
-    poses = moved(here, speeds, times)
-    free = clearance(world, poses[:, :2]) - CLEAR
-    if free[0] < -CLEAR:
+    poses = moved(here, speeds, times, world.scale)
+    free = clearance(world, poses[:, :2]) - clear
+    if free[0] < -clear:
         x, y = here[:2]
         raise ValueError(f"the robot must stand clear of shapes and on the board, got ({x:g}, {y:g}) m")
     blocked = np.flatnonzero((free[1:] < 0) & (free[1:] < free[:-1]))  # who stands too close may drive away
@@ -205,16 +210,16 @@ def start_pose(world: World) -> Floats:
     >>> start_pose(World()).tolist()
     [0.0, 0.0, 0.0]
     """
-    half = 0.0
-    while half < world.size / 2:  # around the centre first: a large board has more places than are ever looked at
-        half = min(max(0.5, 2 * half), world.size / 2)
-        check_places(2 * half, 0.01**2)
+    half, whole = 0.0, world.size / world.scale / 2
+    while half < whole:  # around the centre first: a large board has more places than are ever looked at
+        half = min(max(0.5, 2 * half), whole)
         lines = np.arange(-np.floor(100 * half), np.floor(100 * half) + 1) / 100
         places = np.stack(np.meshgrid(lines, lines, indexing="ij"), axis=-1).reshape(-1, 2)
-        places = places[clearance(world, places) >= CLEAR]
+        places = places[clearance(world, world.scale * places) >= CLEAR * world.scale]
         away = np.hypot(*places.T).round(9)
-        if len(places) and (away.min() <= half or half == world.size / 2):
-            return np.array([*places[np.lexsort((places[:, 1], places[:, 0], away))[0]], 0.0])
+        if len(places) and (away.min() <= half or half == whole):
+            x, y = world.scale * places[np.lexsort((places[:, 1], places[:, 0], away))[0]]
+            return np.array([x, y, 0.0])
     raise ValueError("the board must have room for the robot, got none between its shapes")
 
 
@@ -224,12 +229,6 @@ def _as_pose(pose: ArrayLike) -> Floats:
     if len(poses) != 1:
         raise ValueError(f"a pose must be three finite numbers (x, y, heading), got {short(pose)}")
     return poses[0]
-
-
-def check_places(size: float, room: float) -> None:
-    """Refuse a board that has too many places, each of which takes so much room, in square metres."""
-    rule = f"a board of {size:g} m must have at most {{}} places to stand on"
-    limit(size / room * size, MOST_PLACES, rule, "is it in millimetres?")
 
 
 def check_way(wheels: Floats, period: float) -> None:

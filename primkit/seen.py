@@ -4,7 +4,7 @@ A place q on an outline counts as seen when some point p lies within reach of it
 
     min |q - p| <= reach, 12 cells
 
-In:  places on outlines, shape (..., 2), or a shape; points, shape (N, 2), metres.
+In:  places on outlines, shape (..., 2), or a shape; points, shape (N, 2), metres, and the side of their cells.
 Out: for each place whether it was seen; for a shape the share of each of its sides.
 
 >>> places = np.array([(0.0, 0.0), (0.011, 0.0), (0.013, 0.0)])
@@ -25,12 +25,13 @@ REACH = 0.012  # m on cells of 1 mm: about four times as far as neighbours on an
 PLACES_PER_SIDE = 50  # a side is looked at in so many places, a circle in four times as many
 
 
-def is_seen(places: Floats, points: Floats, reach: float = REACH) -> Bools:
-    """Tell which places, shape (..., 2), have one of the points within ``reach`` metres; shape (...)."""
+def is_seen(places: Floats, points: Floats, resolution: float = 0.001) -> Bools:
+    """Tell which places, shape (..., 2), have one of the points within reach; shape (...)."""
     from scipy.spatial import cKDTree
 
     if len(points) == 0:
         return np.zeros(places.shape[:-1], dtype=bool)
+    reach = REACH * (1000 * resolution)
     tree = cKDTree(points, compact_nodes=False, balanced_tree=False)  # quicker to build; it is asked once
     near: Bools = tree.query(places, distance_upper_bound=np.nextafter(reach, np.inf))[0] <= reach
     return near
@@ -49,9 +50,9 @@ def seen_shares(shape: Shape, points: Floats) -> tuple[float, ...]:
     return shares_of(places_between(shape.vertices, shape.vertices + shape.edges), points)
 
 
-def share_seen(shape: Shape, points: Floats) -> float:
+def share_seen(shape: Shape, points: Floats, resolution: float = 0.001) -> float:
     """Return the share of a whole outline that was seen, 0 to 1."""
-    return float(is_seen(shape.outline(400), points).mean())
+    return float(is_seen(shape.outline(400), points, resolution).mean())
 
 
 def places_between(begin: Floats, end: Floats) -> Floats:

@@ -11,7 +11,7 @@ Source: field names follow the LaserScan message of ROS; see each sensor for its
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -107,6 +107,11 @@ class Lidar:
         if self.model == "webots" and self.beams < LEAST_BEAMS:
             raise ValueError(f'model "webots" must have at least {LEAST_BEAMS} beams, got {self.beams}')
 
+    def scaled(self, k: float) -> Lidar:
+        """Return the sensor with lengths k times as large."""
+        lengths = ("range_min", "range_max", "noise_std", "range_step")
+        return replace(self, **{name: k * getattr(self, name) for name in lengths})
+
     @property
     def angle_increment(self) -> float:
         """Angle from one beam to the next, in radians; negative if they follow clockwise."""
@@ -126,8 +131,8 @@ class Lidar:
         return self.fov, self.angle_min, self.clockwise, self.both_ends
 
 
-def as_lidar(lidar: Lidar | None, *, around: bool = False) -> Lidar:
-    """Return the sensor, the paper's for None, or refuse what is none, or does not look ``around``.
+def as_lidar(lidar: Lidar | None, scale: float = 1.0, *, around: bool = False) -> Lidar:
+    """Return the sensor, for None the paper's on a board of this scale; or refuse what is none, or not all ``around``.
 
     >>> as_lidar(Lidar(fov=np.pi), around=True)
     Traceback (most recent call last):
@@ -135,7 +140,7 @@ def as_lidar(lidar: Lidar | None, *, around: bool = False) -> Lidar:
     ValueError: lidar must see all round here, counter-clockwise from the heading on, got another sweep
     """
     check_type(lidar, (Lidar, type(None)), "lidar must be a Lidar, such as Lidar()")
-    lidar = Lidar() if lidar is None else lidar
+    lidar = Lidar().scaled(scale) if lidar is None else lidar
     if around and lidar.sweep != ALL_ROUND:
         raise ValueError("lidar must see all round here, counter-clockwise from the heading on, got another sweep")
     return lidar

@@ -114,6 +114,10 @@ class Circle:
         """Return the circle shifted by ``offset`` metres (turning a circle changes nothing)."""
         return Circle(self.center + as_point(offset, "offset"), self.radius)
 
+    def scaled(self, k: float) -> Circle:
+        """Return the circle k times as large, seen from the origin, and k times as far away."""
+        return Circle(k * self.center, k * self.radius)
+
     def to_shapely(self, quad_segs: int = 64) -> shapely.Polygon:
         """Return a shapely polygon with 4 x ``quad_segs`` corners on the circle."""
         import shapely
@@ -263,6 +267,10 @@ class Polygon:
         x, y = (self.vertices - middle).T
         turned = np.column_stack([x * c - y * s, x * s + y * c])  # no matrix product: its last bits differ by machine
         return Polygon(turned + middle + as_point(offset, "offset"))
+
+    def scaled(self, k: float) -> Polygon:
+        """Return the polygon k times as large, seen from the origin, and k times as far away."""
+        return Polygon(k * self.vertices)
 
     def to_shapely(self) -> shapely.Polygon:
         """Return the shapely polygon with the same corners."""

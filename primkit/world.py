@@ -36,8 +36,10 @@ QUADRANT_CENTER = 0.225  # of the board's size
 QUADRANT_JITTER = 0.1  # of the board's size, each way
 PENTAGON = np.array([(0, -1), (0.9, -0.3), (0.5, 0.8), (-0.5, 0.8), (-0.91, -0.3)])
 
+KILOMETRE = 1000.0  # m: who has so large a board, or the paper's in millimetres
 EDGE_MARGIN = 0.12  # m from a shape to the board's edge, so that way-points lie on every side of it
 LEAST_CORNER, LEAST_FREE_SIDE = np.radians(30), 0.04  # rad (and to 180 degrees) and m: corners and sides can be told
+LEAST_GAP = 0.05  # m between two outlines
 TRIES_PER_SHAPE = 300  # a shape that found no room in this many tries will hardly find any
 TRIES_PER_WORLD = 20
 MOST_COMPARED = 1000  # pairs of shapes whose boxes meet, of which one may lie on the other
@@ -63,7 +65,8 @@ class World:
     shapes : iterable of Circle and Polygon
         What stands on the board. Shapes may touch or overlap; ``random_world`` never makes them so.
     size : float
-        Side of the board in metres; it spans ``[-size/2, size/2]`` both ways.
+        Side of the board in metres; it spans ``[-size/2, size/2]`` both ways. All else follows its ``scale``: a
+        board of 10 m has a robot, a LiDAR, way-points and cells ten times as large as the paper's.
     walls : bool
         Whether the board's edge is a wall, which the LiDAR sees from inside. Outside, all is solid.
 
@@ -71,8 +74,8 @@ class World:
     --------
     >>> World([Circle((0, 0), 0.1)]).shapes[0].kind
     'circle'
-    >>> World(walls=True).walls[0].tolist()
-    [[-0.5, -0.5], [0.5, -0.5]]
+    >>> World(walls=True).walls[0].tolist(), World(size=25).scale
+    ([[-0.5, -0.5], [0.5, -0.5]], 10.0)
     """
 
     shapes: tuple[Shape, ...]
@@ -93,6 +96,20 @@ class World:
         object.__setattr__(self, "walled", bool(walls))
         if sentence := _misplaced(shapes, self.size):
             doubt(sentence, depth=1)
+
+    @property
+    def scale(self) -> float:
+        """How many times larger than the paper's all is that belongs to the board: its robot, sensor and cells."""
+        return scale_of(self.size)
+
+    @property
+    def cell(self) -> float:
+        """Side of the cells that what was seen of the board is put on, metres: 1 mm, times the scale."""
+        return 0.001 * self.scale
+
+    def scaled(self, k: float) -> World:
+        """Return the board with all that stands on it, k times as large."""
+        return World([shape.scaled(k) for shape in self.shapes], k * self.size, walls=self.walled)
 
     @property
     def walls(self) -> Floats:
@@ -122,6 +139,16 @@ class World:
         return min((gap_between(a, b) for a, b in combinations(self.shapes, 2)), default=float("inf"))
 
 
+def scale_of(size: float) -> float:
+    """Return the scale of a board of ``size`` metres: 1 between 10 cm and 10 m, else the next power of ten towards 1.
+
+    >>> [scale_of(size) for size in (0.05, 0.1, 0.11, 1, 9.9, 10, 99, 100)]
+    [0.1, 0.1, 1.0, 1.0, 1.0, 10.0, 10.0, 100.0]
+    """
+    power = np.log10(size)
+    return float(10.0 ** np.trunc(power + np.copysign(1e-9, power)))  # 0.1 has no exact logarithm
+
+
 def _misplaced(shapes: Sequence[Shape], size: float) -> str:
     """Return a sentence on the first shape that lies wholly off the board or on another one; empty if none does."""
     boxes = [
@@ -130,6 +157,8 @@ def _misplaced(shapes: Sequence[Shape], size: float) -> str:
         else (s.vertices.min(axis=0), s.vertices.max(axis=0))
         for s in shapes
     ]
+    if size >= KILOMETRE:
+        return f"a board is {size:g} m wide: is it in millimetres?"
     low, high = np.array(boxes).reshape(-1, 2, 2).transpose(1, 0, 2)
     off = ((low > size / 2) | (high < -size / 2)).any(axis=1)
     if off.any():
@@ -174,7 +203,7 @@ def random_world(
     *,
     style: Style = "paper",
     kinds: Sequence[Kind | Sort] | None = None,
-    gap: float = 0.05,
+    gap: float | None = None,
     size: float = 1.0,
     walls: bool = False,
     rng: int | np.random.Generator | None = None,
@@ -195,10 +224,11 @@ def random_world(
     kinds : sequence of str, optional
         The kind of each shape, n of them; drawn evenly from the four kinds when not given. In the style ``"any"``
         also one of the sorts above, or ``"polygon"`` for one of them at random.
-    gap : float
-        Least distance between two outlines in metres.
+    gap : float, optional
+        Least distance between two outlines in metres; 5 cm when not given.
     size, walls
-        As for ``World``. Outlines stay 0.12 m from the edge, so that way-points lie on every side of them.
+        As for ``World``. Outlines stay 0.12 m from the edge, so that way-points lie on every side of them; these
+        lengths, too, follow the board's scale.
     rng : seed or numpy.random.Generator, optional
         The same seed gives the same world.
 
@@ -213,7 +243,8 @@ def random_world(
     """
     rng = as_rng(rng)
     limit(n := as_count(n, "n", least=0), MOST_RANDOM, "n must be at most {}")
-    gap, size = as_positive(gap, "gap", zero=True), as_positive(size, "size")
+    size, scale = as_positive(size, "size"), scale_of(as_positive(size, "size"))
+    gap = LEAST_GAP * scale if gap is None else as_positive(gap, "gap", zero=True)
     if style not in STYLES:
         raise ValueError(f'style must be "paper", "free" or "any", got {short(style)}')
     if style == "paper" and n > len(QUADRANTS):
@@ -221,9 +252,9 @@ def random_world(
     kinds = _checked_kinds(kinds, n, style, rng)
 
     for _ in range(TRIES_PER_WORLD):
-        shapes = _try_to_place(kinds, style, gap, size, rng)
+        shapes = _try_to_place(kinds, style, gap / scale, size / scale, rng)
         if shapes is not None:
-            return World(shapes, size, walls=walls)
+            return World([shape.scaled(scale) for shape in shapes], size, walls=walls)
     raise ValueError(
         f"no room found for {n} shapes with a gap of {gap:g} m on a board of {size:g} m: "
         "ask for fewer shapes, a smaller gap or a larger board"

@@ -34,15 +34,15 @@ def test_the_papers_77_waypoints():
     assert (poses[:, 2] == 0).all()
 
 
-@pytest.mark.parametrize("size", [f"{cm / 100:g}" for cm in [*range(1, 120), 200, 205, 310, 1000]])
+@pytest.mark.parametrize("size", [f"{cm / 100:g}" for cm in [*range(11, 120), 200, 205, 310, 999]])
 def test_waypoints_of_boards_of_any_size(size):
     """The last row and column are neither lost nor doubled by rounding: 0.9 / 0.15 is 6."""
     np.testing.assert_allclose(waypoints(float(size)), paper_waypoints(size), atol=1e-12)
 
 
-def test_a_board_of_ten_centimetres_has_one_column():
-    np.testing.assert_allclose(waypoints(0.1), [(-0.05, -0.05, 0), (-0.05, 0.05, 0)], atol=1e-15)
-    assert waypoints(0.09).shape == (0, 3)
+def test_a_board_of_eleven_centimetres_has_one_column_and_one_of_ten_as_many_as_one_of_a_metre():
+    np.testing.assert_allclose(waypoints(0.11), [(-0.055, -0.055, 0), (-0.055, 0.045, 0)], atol=1e-15)
+    np.testing.assert_allclose(waypoints(0.1), waypoints() * (0.1, 0.1, 1), atol=1e-15)
 
 
 SIZE_FAILURES = {

@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 
 import primkit as pk
+from primkit.arguments import LikelyWrong
+from primkit.driving.wander import wander
 from primkit.measure import measure_shape
+from primkit.plots import plot_drive
+from primkit.scene import DriveState, replay
+from primkit.scene.keys import wheels_for
+from primkit.scene.page import describe
 from primkit.segmentation import count_by_silhouette
 from tests.benchmarks.open_world.account import UTM
 from tests.benchmarks.open_world.ordinary import SAME, apart_by, board
@@ -104,3 +110,91 @@ def test_a_grid_is_not_told_its_cells():
     message = "resolution must not be given with a grid, which knows its own, got 0.001"
     with pytest.raises(ValueError, match=exactly(message)):
         pk.find_shapes(pk.Grid(), resolution=0.001)
+
+
+# --- the whole board, with nothing more to set ------------------------------------------------------------------
+
+POWERS = (0.1, 100.0)
+
+
+@pytest.mark.parametrize(("style", "walls"), [("paper", False), ("free", True), ("any", False)])
+@pytest.mark.parametrize("k", POWERS)
+def test_a_board_k_times_as_large_is_drawn_scanned_found_and_scored_alike(k, style, walls):
+    here, there = (pk.random_world(3, style=style, walls=walls, size=size, rng=5) for size in (1.0, k))
+    assert there == here.scaled(k)
+    poses, places = pk.teleport_poses(here), pk.teleport_poses(there)
+    np.testing.assert_allclose(places, poses * (k, k, 1), rtol=1e-12)
+    found, reports = [], []
+    for world in (here, there):
+        grid = pk.Grid(world.cell)
+        grid.add(pk.scan(world, pk.teleport_poses(world), rng=0))
+        found.append(pk.find_shapes(grid, rng=0))
+        reports.append(pk.evaluate(found[-1], world))
+    assert [one.kind for one in found[1]] == [one.kind for one in found[0]]
+    assert len(found[1].walls) == len(found[0].walls) == 4 * walls
+    assert reports[1].weighted_accuracy == reports[0].weighted_accuracy == 1.0
+    assert reports[1].tolerance == pytest.approx(0.005 * k)
+
+
+@pytest.mark.parametrize("k", POWERS)
+def test_a_board_k_times_as_large_is_explored_alike(k):
+    """To the metre the ways are not the same: where a beam ends on the border of two squares, rounding decides."""
+    here, there = (pk.random_world(3, size=size, rng=7) for size in (1.0, k))
+    tour, large = (pk.explore(world, rng=0) for world in (here, there))
+    assert large.why == tour.why == "all is seen"
+    assert abs(large.n_scans - tour.n_scans) <= 2
+    assert large.robot_time == pytest.approx(tour.robot_time, rel=0.2)
+    assert pk.evaluate(large.found, there).weighted_accuracy == pk.evaluate(tour.found, here).weighted_accuracy == 1.0
+
+
+@pytest.mark.parametrize("k", POWERS)
+@pytest.mark.parametrize("moving", [False, True])
+def test_a_board_k_times_as_large_is_driven_alike(k, moving):
+    worlds = [pk.World([pk.Circle((0.2, 0.0), 0.05)]).scaled(size) for size in (1.0, k)]
+    states = [DriveState(world, moving=moving) for world in worlds]
+    for state in states:
+        for keys in [["forward"]] * 5 + [["left"]] * 8 + [["forward", "left"]] * 6:
+            state.step(wheels_for(keys))
+        assert not moving or state.move_something()
+    here, there = states
+    np.testing.assert_allclose(there.pose, here.pose * (k, k, 1), rtol=1e-9, atol=1e-12 * k)
+    assert abs(len(there.grid) - len(here.grid)) <= 3  # rounding at cells' edges
+    assert np.mean(there.unseen() == here.unseen()) > 0.999
+    np.testing.assert_allclose(there.world.shapes[0].center, k * here.world.shapes[0].center, rtol=1e-9)
+    assert describe(there.found)["shapes"][0]["kind"] == describe(here.found)["shapes"][0]["kind"]
+    ways = [np.array(describe(state.found)["shapes"][0]["place"]) for state in states]
+    assert np.abs(ways[0] - ways[1]).max() <= 20  # tenths of a millimetre on the paper's scale
+
+
+@pytest.mark.parametrize("k", POWERS)
+def test_a_drive_on_a_board_k_times_as_large_is_shown_alike(k):
+    here, there = pk.World([pk.Circle((0.2, 0.0), 0.05)]), pk.World([pk.Circle((0.2, 0.0), 0.05)]).scaled(k)
+    told = []
+    for world in (here, there):
+        route = pk.scripted_route(world, rng=0)
+        poses = route.poses(world)[:40]
+        lidar = pk.Lidar().scaled(world.scale)
+        drive = pk.Drive(pk.scan(world, poses, lidar), np.vstack([(0.0, 0.0), route.wheels[:39]]), lidar)
+        shown, blind = replay(drive, world), replay(drive)
+        told.append((poses, shown.told(), blind.told(), plot_drive(world, drive, 2)))
+        shown.close()
+        blind.close()
+    (poses, film, blind, strip), (places, large, unknown, wide) = told
+    np.testing.assert_allclose(places, poses * (k, k, 1), rtol=1e-6, atol=1e-9 * k)
+    assert large["board"]["unit"] == unknown["board"]["unit"] == pytest.approx(k * film["board"]["unit"])
+    assert large["board"]["body"] == pytest.approx(k * film["board"]["body"])
+    assert unknown["board"]["size"] == pytest.approx(k * blind["board"]["size"])
+    assert [look["scan"] for look in large["looks"]] == [look["scan"] for look in film["looks"]]
+    assert large["truths"] == film["truths"]
+    assert [ax.get_title(loc="left") for ax in wide.axes] == [ax.get_title(loc="left") for ax in strip.axes]
+    np.testing.assert_allclose(wander(there, 30, rng=1), wander(here, 30, rng=1) * (k, k, 1), rtol=1e-9)
+
+
+def test_a_study_of_boards_of_ten_metres_needs_nothing_more():
+    rows = pk.run_study([pk.random_world(2, size=10, rng=1)], {"ROBUST": pk.ROBUST}, jobs=1)
+    assert (rows[0].fair.weighted, rows[0].tolerance) == (1.0, pytest.approx(0.05))
+
+
+def test_a_board_of_a_kilometre_is_doubted():
+    with pytest.warns(LikelyWrong, match="a board is 1000 m wide: is it in millimetres?"):
+        pk.World(size=1000)

@@ -222,7 +222,7 @@ def test_the_paper_s_maps_are_the_default(monkeypatch):
     [
         ({"worlds": [1]}, "each of the worlds must be World, got int"),
         ({"settings": {"mine": "robust"}}, "each of the settings must be Settings, got str"),
-        ({"lidar": 0.3}, "lidar must be Lidar, got float"),
+        ({"lidar": 0.3}, "lidar must be a Lidar, such as Lidar(), got float"),
         ({"tolerance": -1}, "tolerance must be a finite number >= 0, got -1"),
         ({"seed": 0.5}, "seed must be a whole number >= 0, got 0.5"),
         ({"jobs": 0}, "jobs must be a whole number >= 1, -1 for every core, or None, got 0"),

@@ -7,6 +7,7 @@ Out: a report on the screen, a picture and maps in a folder; or one map in a fil
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -78,7 +79,8 @@ def map_board(arguments: argparse.Namespace) -> None:
     from ..study import METHODS, Experiment, make_folder, run
 
     world, origin = _board(arguments)
-    lidar = Lidar(noise_std=arguments.noise / 1000, spurious=arguments.spurious)
+    usual = Lidar().scaled(world.scale)
+    lidar = replace(usual, noise_std=arguments.noise / 1000, spurious=arguments.spurious)
     method = arguments.settings.upper()
     out = make_folder(arguments.out)
     say(f"Board  {_census(world)}; {world.size:g} m x {world.size:g} m ({origin})")
@@ -114,7 +116,8 @@ def _tell(world: World, lidar: Lidar, done: Run, method: str) -> None:
     noise, number = 1000 * lidar.noise_std, "" if done.told is None else f", being told that there are {done.told}"
     where = "inside a shape or beside a wall" if world.walled else f"inside a shape{f': {places} m' if places else ''}"
     say(f"Robot  {n_poses} way-points, {len(skipped)} skipped {where}")
-    say(f"LiDAR  {done.scans.hits.sum()} hits on {len(done.points)} cells of 1 mm; range noise {noise:g} mm")
+    cells = f"{len(done.points)} cells of {1000 * world.cell:g} mm"
+    say(f"LiDAR  {done.scans.hits.sum()} hits on {cells}; range noise {noise:g} mm")
     found = ", ".join(filter(None, (count(len(done.found), "shape"), done.found.rest())))
     say(f"Found  {found} with the settings {method}{number}")
     robot = f"{done.robot_time:.1f} s (all way-points x {lidar.period:g} s)"

@@ -106,7 +106,8 @@ def explore(
     Parameters
     ----------
     world : World
-    lidar : Lidar, default Lidar()
+    lidar : Lidar, optional
+        As for ``scan``.
     start : array_like, shape (3,), optional
         As for ``drive``.
     steps : Steps, optional
@@ -121,7 +122,7 @@ def explore(
     Exploration: no shapes from 3 scans in 4.2 s; out of scans
     """
     check_type(world, World, "world must be a World, as in explore(world)")
-    lidar = as_lidar(lidar, around=True)
+    lidar = as_lidar(lidar, world.scale, around=True)
     most_scans = as_count(most_scans, "most_scans")
     pose = advance(world, start_pose(world) if start is None else start, (0, 0), 0)[0]  # refused unless it is clear
     tour = _Tour(world, lidar, pose, steps, as_rng(rng))
@@ -142,12 +143,19 @@ class _Tour:
         self.scans: list[Scans] = []
         self.scan_rng, find_rng = rng.spawn(2)
         self.board = SeenMap(world.size)
-        self.mapper = Mapper(settings=unmended(steps), steps=steps, rng=find_rng)
+        self.eye = lidar.scaled(1 / world.scale)  # the sensor on the map
+        self.mapper = Mapper(world.cell, settings=unmended(steps), steps=steps, rng=find_rng)
         self.vain = np.zeros(self.board.free.shape, dtype=np.int64)  # how often each square was looked at in vain
         self.been = np.zeros(self.vain.shape, dtype=bool)  # squares that were scanned from
         self.found, self.outlines = Found(), outlines_in(Found())
         self.found_from = 0  # points that this was made of
         self.inside = self.explained = np.zeros(self.vain.shape, dtype=bool)
+
+    @property
+    def here(self) -> Floats:
+        """Where the robot is on the map, shape (3,)."""
+        here: Floats = self.path[-1] / (self.world.scale, self.world.scale, 1.0)
+        return here
 
     def look(self) -> None:
         """Scan, and learn from it."""
@@ -155,14 +163,14 @@ class _Tour:
         self.scans.append(seen)
         self.mapper.add(seen)
         self.board.add(seen, self.lidar.range_min, self.lidar.range_max)
-        i, j = self.board.index(self.path[-1][:2])
+        i, j = self.board.index(self.here[:2])
         self.been[i, j] = True
         if len(self.scans) > 1:  # what a beam should have shown, and did not
-            self.vain += shown_from((int(i), int(j)), self.worth(), self.opaque(), self.lidar)
+            self.vain += shown_from((int(i), int(j)), self.worth(), self.opaque(), self.eye)
 
     def move_on(self) -> Why | None:
         """Drive to the next view, or as far as something stops the robot; without a view, say why there is none."""
-        ways = ways_from(self.board, self.path[-1][:2])
+        ways = ways_from(self.board, self.here[:2])
         view = self.view(ways)
         if view is not None:
             self.drive(ways.to(view.square))
@@ -171,9 +179,9 @@ class _Tour:
 
     def view(self, ways: Ways) -> View | None:
         """Return the best next view; when the map alone has little to offer, in the light of what was found."""
-        view = next_view(self.worth(), self.opaque(), ways, self.lidar, self.been)
+        view = next_view(self.worth(), self.opaque(), ways, self.eye, self.been)
         if (view is None or view.gain < LITTLE_GAIN) and self.find():
-            view = next_view(self.worth(), self.opaque(), ways, self.lidar, self.been)
+            view = next_view(self.worth(), self.opaque(), ways, self.eye, self.been)
         return view
 
     def find(self) -> bool:
@@ -181,7 +189,7 @@ class _Tour:
         if len(self.mapper.grid) == self.found_from:
             return False
         self.found, self.found_from = self.mapper.found, len(self.mapper.grid)
-        self.outlines = outlines_in(self.found)
+        self.outlines = outlines_in(self.found, self.world.scale)
         self.inside = self.board.covered(self.outlines, 0.0)
         self.explained = self.board.covered(self.outlines, EXPLAINED)
         return True
@@ -199,11 +207,11 @@ class _Tour:
 
     def drive(self, way: Floats) -> None:
         """Drive along a way; on contact, remember where, and back off."""
-        for speeds in wheels_along(self.path[-1], way):
+        for speeds in wheels_along(self.here, way):
             if self.turn_wheels(speeds):
-                heading = self.path[-1][2]
-                ahead = (BODY + SQUARE / 2) * np.array([np.cos(heading), np.sin(heading)])
-                self.board.bump(self.path[-1][:2] + ahead)
+                x, y, heading = self.here
+                ahead = BODY + SQUARE / 2
+                self.board.bump(np.array([x + ahead * np.cos(heading), y + ahead * np.sin(heading)]))
                 for back in -forward(BACK_OFF):
                     self.turn_wheels(back)
                 break

@@ -43,10 +43,12 @@ from numpy.typing import ArrayLike, NDArray
 from ..arguments import Bools, Floats, Ints
 from ..grid import Grid, as_cells, as_keys
 from ..lidar import Lidar, Scans, as_lidar
+from ..measure import CELL
 from ..segmentation import components
 from ..show import thumbnail
 from ..table import count
 
+# All lengths are those for cells of 1 mm, and follow the cell.
 # m: what lies this near before a hit may be the same outline, seen with noise or grazing, or through its own cell.
 BEFORE_A_HIT = 0.01
 SHARPEST = np.radians(30)  # no corner of a shape is sharper
@@ -74,7 +76,7 @@ class MovingGrid:
 
     def __init__(self, resolution: float = 0.001, lidar: Lidar | None = None) -> None:
         self._frame = Grid(resolution)  # stays empty: where its cells lie, these lie
-        self.lidar = as_lidar(lidar, around=True)
+        self.lidar, self._unit = as_lidar(lidar, around=True), self._frame.resolution / CELL
         self.n_scans = 0  # how many scans were added
         self._cells = np.zeros(0, dtype=CELL_FIELDS)
         self._gone = np.zeros(0, dtype=GONE_FIELDS)
@@ -173,11 +175,13 @@ class MovingGrid:
         high = (low + 1) % lidar.beams
         silent = _next_to_near_hits(one, lidar)
         silent[low[q <= lidar.range_min]] = silent[high[q <= lidar.range_min]] = True
-        free_to = np.where(one.hits[0], one.ranges[0] - BEFORE_A_HIT, np.where(silent, 0.0, lidar.range_max))
+        free_to = np.where(
+            one.hits[0], one.ranges[0] - BEFORE_A_HIT * self._unit, np.where(silent, 0.0, lidar.range_max)
+        )
         across = q * np.abs(np.sin((beam - np.rint(beam)) * step))
         passed = (across <= self.resolution / 2) & (q < free_to[nearest])
         between = q * (1 + _hidden_share(step)) < np.minimum(free_to[low], free_to[high])
-        near = np.flatnonzero(q <= lidar.range_max + BEHIND)
+        near = np.flatnonzero(q <= lidar.range_max + BEHIND * self._unit)
         contradicted: Bools = passed | between
         contradicted[near] |= self._behind_newcomers(near, one.points())
         return contradicted
@@ -191,7 +195,7 @@ class MovingGrid:
         to_hit = hits - origin[:, None]  # (N, H, 2)
         along = (to_hit * sight[:, None]).sum(axis=2) / length
         across = np.abs(to_hit[..., 0] * sight[:, None, 1] - to_hit[..., 1] * sight[:, None, 0]) / length
-        ahead = length - along
+        ahead = (length - along) / self._unit
         between: Bools = ((across <= self.resolution) & (ahead > BEFORE_A_HIT) & (ahead < BEHIND)).any(axis=1)
         return between
 
@@ -201,13 +205,15 @@ class MovingGrid:
 
         left = self.points()
         places = self._frame.to_points(as_cells(self._gone["key"]))
-        bare = np.ones(len(places), dtype=bool) if len(left) == 0 else cKDTree(left).query(places)[0] > BARE
+        bare = (
+            np.ones(len(places), dtype=bool) if len(left) == 0 else cKDTree(left).query(places)[0] > BARE * self._unit
+        )
         self._gone = gone = self._gone[bare]
         if len(gone) < LEAST_EVICTED:
             return np.zeros(len(left), dtype=bool)
         together = np.vstack([places[bare], left])
         n = len(together)
-        part = components(n, cKDTree(together).query_pairs(CONNECTED, output_type="ndarray").T)
+        part = components(n, cKDTree(together).query_pairs(CONNECTED * self._unit, output_type="ndarray").T)
         part_gone, part_left = part[: len(gone)], part[len(gone) :]
         last = np.zeros(n, dtype=np.int64)
         np.maximum.at(last, part_gone, gone["seen"])

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from ..arguments import Floats, as_count, as_rng, check_type
 from ..formats import Route, paper_suite, scripted_drives
-from ..robot import AXLE, FASTEST, PERIOD, WHEEL, advance, check_places, clearance, moved, start_pose
+from ..robot import AXLE, FASTEST, PERIOD, WHEEL, advance, clearance, moved, start_pose
 from ..shapes import Shape
 from ..world import World
 from .ways import tighten, trace
@@ -65,8 +65,10 @@ def scripted_route(world: World, *, rng: int | np.random.Generator | None = None
     """
     check_type(world, World, "world must be a World")
     generator = as_rng(rng)
-    start = start_pose(world)
-    return Route(start, _steer(world, start, tour(world, start[:2], generator), generator))
+    scale, small = world.scale, world.scaled(1 / world.scale)
+    start = start_pose(small)
+    wheels = _steer(small, start, tour(small, start[:2], generator), generator)
+    return Route(start * (scale, scale, 1.0), wheels)
 
 
 def drives_on(worlds: Mapping[str, World], *, seed: int = 0) -> dict[str, Floats]:
@@ -162,7 +164,6 @@ class _Board:
         from scipy.sparse import coo_array
         from scipy.spatial import cKDTree
 
-        check_places(world.size, WAY_GRID**2)
         half = np.floor(world.size / 2 / WAY_GRID)
         lines = np.arange(-half, half + 1) * WAY_GRID
         places = np.stack(np.meshgrid(lines, lines, indexing="ij"), axis=-1).reshape(-1, 2)

@@ -14,6 +14,9 @@ Up to its hit a beam's way is free. A beam that returns nothing saw no outline b
 distance; but an outline nearer than the least blocks it as well. So it counts only where the ring around the robot,
 from its body to the least distance, is known to be free. The first look cannot know that: what it takes for free is
 driven through (a contact stops the robot), but not yet seen.
+
+Whatever the scale of the board, the map is one of the paper's: its squares are a hundredth of a metre times the scale,
+and so are the lengths in it and in what is planned on it. What comes in is in metres.
 """
 
 from __future__ import annotations
@@ -24,9 +27,10 @@ from numpy.typing import NDArray
 from ..arguments import Bools, Floats
 from ..found import Found
 from ..lidar import Scans
-from ..robot import BODY, check_places
+from ..robot import BODY
 from ..seen import is_seen
 from ..shapes import Polygon, Shape
+from ..world import scale_of
 from .moving_grid import BEFORE_A_HIT
 
 SQUARE = 0.01  # m: side of a square of the map
@@ -41,10 +45,10 @@ class SeenMap:
     """What one robot knows of its board; it knows where the board, ``size`` metres wide, ends."""
 
     def __init__(self, size: float) -> None:
-        check_places(size, SQUARE**2)
-        self.size = size
-        n = max(1, int(np.ceil(size / SQUARE - 1e-9)))
-        lines = (np.arange(n) + 0.5) * SQUARE - size / 2
+        self.scale = scale_of(size)
+        self.size = size / self.scale
+        n = max(1, int(np.ceil(self.size / SQUARE - 1e-9)))
+        lines = (np.arange(n) + 0.5) * SQUARE - self.size / 2
         self.centers = np.stack(np.meshgrid(lines, lines, indexing="ij"), axis=-1)  # (N, N, 2), metres
         self.free = np.zeros((n, n), dtype=bool)  # may be driven through
         self.seen = np.zeros((n, n), dtype=bool)  # surely holds nothing
@@ -65,8 +69,9 @@ class SeenMap:
 
     def add(self, scans: Scans, range_min: float, range_max: float) -> None:
         """Learn from scans, one after the other; the sensor's limits are in metres."""
+        scans = scans.scaled(1 / self.scale)
         for i in range(len(scans)):
-            self._learn(scans[i : i + 1], range_min, range_max)
+            self._learn(scans[i : i + 1], range_min / self.scale, range_max / self.scale)
 
     def _learn(self, one: Scans, range_min: float, range_max: float) -> None:
         pose, ranges, hit = one.poses[0], one.ranges[0], one.hits[0]
@@ -129,10 +134,14 @@ def join_hits(one: Scans) -> Floats:
     return np.vstack([hits[one.hits[0]], between])
 
 
-def outlines_in(found: Found) -> list[tuple[Shape, Floats]]:
-    """Return the outline and the points, shape (N, 2), metres, of each shape, and of each thing that is of no kind."""
-    others = [(Polygon(other.outline), other.points) for other in found.others]
-    return [*((one.shape, one.points) for one in found), *others]
+def outlines_in(found: Found, scale: float = 1.0) -> list[tuple[Shape, Floats]]:
+    """Return the outline and the points, shape (N, 2), of each shape, and of each thing that is of no kind.
+
+    They are those that a map of this scale has.
+    """
+    things = [(one.shape, one.points) for one in found]
+    things += [(Polygon(other.outline), other.points) for other in found.others]
+    return [(outline.scaled(1 / scale), points / scale) for outline, points in things]
 
 
 def open_outlines(outlines: list[tuple[Shape, Floats]]) -> Floats:

@@ -30,11 +30,12 @@ START_SPOTS = 1000  # tried
 
 
 def wander(
-    world: World, n_poses: int = 60, *, clearance: float = CLEARANCE, rng: int | np.random.Generator | None = None
+    world: World, n_poses: int = 60, *, clearance: float | None = None, rng: int | np.random.Generator | None = None
 ) -> Floats:
     """Return the poses of a smooth random drive, ``clearance`` metres from all outlines or more, shape (n_poses, 3).
 
-    Raises ValueError if the number or the clearance is out of its range, or no spot on the board is that clear.
+    Without a clearance it is 4 cm, times the board's scale. Raises ValueError if the number or the clearance is out of
+    its range, or no spot on the board is that clear.
 
     >>> from primkit.shapes import Circle
     >>> wander(World([Circle((0, 0), 0.4)]), clearance=0.4, rng=0)
@@ -43,8 +44,13 @@ def wander(
     ValueError: clearance must leave room for a drive, got 0.4 m on a board of 1 m
     """
     rng = np.random.default_rng(rng)
-    n_poses, clearance = as_count(n_poses, "n_poses"), as_positive(clearance, "clearance", zero=True)
+    n_poses, scale = as_count(n_poses, "n_poses"), world.scale
+    clearance = CLEARANCE if clearance is None else as_positive(clearance, "clearance", zero=True) / scale
+    world = world.scaled(1 / scale)
     place, turn = _start(world, clearance, rng), 0.0
+    if place is None:
+        at = f"{scale * clearance:g} m on a board of {scale * world.size:g} m"
+        raise ValueError(f"clearance must leave room for a drive, got {at}")
     heading = rng.uniform(0, 2 * np.pi)
     poses = [(*place, heading)]
     while len(poses) < n_poses:
@@ -53,15 +59,13 @@ def wander(
         heading += turn
         place = place + goes * PERIOD_WAY * np.array([np.cos(heading), np.sin(heading)])
         poses.append((*place, heading))
-    return np.array(poses)
+    return np.array(poses) * (scale, scale, 1.0)
 
 
-def _start(world: World, clearance: float, rng: np.random.Generator) -> Floats:
+def _start(world: World, clearance: float, rng: np.random.Generator) -> Floats | None:
     spots = rng.uniform(-0.5, 0.5, (START_SPOTS, 2)) * (world.size - 2 * WAY_MARGIN)
     free = np.flatnonzero(_clear(world, spots, clearance))
-    if len(free) == 0:
-        raise ValueError(f"clearance must leave room for a drive, got {clearance:g} m on a board of {world.size:g} m")
-    return spots[free[0]]
+    return spots[free[0]] if len(free) else None
 
 
 def _turn(world: World, place: Floats, heading: float, wish: float, clearance: float) -> tuple[float, bool]:

@@ -26,7 +26,7 @@ from ..found import Found, resolution_of
 from ..measure import CELL, Detection, Other, Wall
 from ..palette import GREY, INK, KIND_COLORS, KIND_INKS
 from ..report import Match, Report
-from ..seen import REACH, is_seen
+from ..seen import is_seen
 from ..shapes import Circle, Polygon, Shape
 from ..show import digits_of_mm
 from ..table import count
@@ -142,7 +142,7 @@ def _draw_outline(ax: Axes, shape: Shape, item: Detection | Shape, own: ColorTyp
         ax.plot(*corners.T, "o", color="white", markeredgecolor=color, markersize=marks(ax, 4.5), zorder=4)
     seen = np.ones(len(ring), dtype=bool)
     if isinstance(item, Detection):
-        seen = is_seen(ring, item.points, REACH / CELL * resolution_of([item]))
+        seen = is_seen(ring, item.points, resolution_of([item]))
         bare = np.where(seen[:, None] & doubtful, np.nan, ring)
         ax.plot(*bare.T, color=color, linewidth=1.2, linestyle=DASHED, zorder=3)
     line = {"linestyle": DOTTED} if doubtful else {"solid_capstyle": "butt"}

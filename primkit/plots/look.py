@@ -197,11 +197,11 @@ def draw_areas(ax: Axes, shapes: Iterable[Shape], own: ColorType | None = None, 
         ax.add_patch(patch(shape, **(usual | look)))
 
 
-def draw_robot(ax: Axes, pose: Floats, width: float = 1.0) -> None:
+def draw_robot(ax: Axes, pose: Floats, width: float = 1.0, scale: float = 1.0) -> None:
     """Draw the robot's body, with a line from its middle to where it heads; ``width`` in points."""
-    x, y, heading = pose.tolist()
-    ax.add_patch(CirclePatch((x, y), BODY, facecolor="white", edgecolor=INK, linewidth=width, zorder=2.8))
-    nose = BODY * np.array([np.cos(heading), np.sin(heading)])
+    (x, y, heading), body = pose.tolist(), BODY * scale
+    ax.add_patch(CirclePatch((x, y), body, facecolor="white", edgecolor=INK, linewidth=width, zorder=2.8))
+    nose = body * np.array([np.cos(heading), np.sin(heading)])
     ax.plot([x, x + nose[0]], [y, y + nose[1]], color=INK, linewidth=1.6 * width, solid_capstyle="butt", zorder=5)
 
 

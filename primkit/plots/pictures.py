@@ -21,7 +21,7 @@ from matplotlib.typing import ColorType
 from numpy.typing import ArrayLike, NDArray
 
 from ..arguments import Floats, as_count, as_points, as_positive, check_type
-from ..lidar import Lidar, Scans
+from ..lidar import Lidar, Scans, as_lidar
 from ..palette import CLUSTER_COLORS, CLUSTER_MARKERS, GREY, INK, KIND_INKS, ORANGE, PALE
 from ..raycast import cast_rays
 from ..shapes import Circle
@@ -118,9 +118,10 @@ def plot_scan(
     >>> plot_scan(world, scan(world, [(0, 0, 0)])).get_title(loc="left")
     'Scan 0: 9 of 100 beams hit'
     """
-    lidar = Lidar() if lidar is None else lidar
-    for name, value, kind in (("world", world, World), ("scans", scans, Scans), ("lidar", lidar, Lidar)):
+    sensor = Lidar() if lidar is None else lidar
+    for name, value, kind in (("world", world, World), ("scans", scans, Scans), ("lidar", sensor, Lidar)):
         check_type(value, kind, f"{name} must be of type {kind.__name__}")
+    lidar = as_lidar(lidar, world.scale)
     if as_count(index, "index", least=0) >= len(scans):
         raise ValueError(f"index must be below the number of scans, got {index} for {len(scans)}")
     check_look(title, color)
@@ -128,7 +129,7 @@ def plot_scan(
     draw_board(ax, world.size, Circle(seen.poses[0, :2], lidar.range_max).outline(4), legend=True, walls=world.walled)
     draw_areas(ax, world.shapes, linewidth=1.5)
     beams = _draw_beams(ax, world, seen, lidar, ORANGE if color is None else color)
-    draw_legend(ax, [*beams, *_draw_range(ax, seen.poses[0], lidar)])
+    draw_legend(ax, [*beams, *_draw_range(ax, seen.poses[0], lidar, world.scale)])
     hits = f"{seen.hits.sum()} of {seen.hits.size} beams hit"
     set_title(ax, f"Scan {index}: {'inside a shape, it sees nothing' if seen.inside[0] else hits}", title)
     return ax
@@ -149,12 +150,12 @@ def _draw_beams(ax: Axes, world: World, seen: Scans, lidar: Lidar, color: ColorT
     return [dot, Line2D([], [], color=PALE, label="no hit")]
 
 
-def _draw_range(ax: Axes, pose: Floats, lidar: Lidar) -> list[Artist]:
+def _draw_range(ax: Axes, pose: Floats, lidar: Lidar, scale: float) -> list[Artist]:
     """Draw the robot, and the ring in which it can see; return what the legend shows."""
     rim: dict[str, Any] = {"color": GREY, "linestyle": "--", "linewidth": 0.9}
     for radius in (lidar.range_min, lidar.range_max):
         ax.add_patch(CirclePatch((pose[0], pose[1]), radius, fill=False, zorder=2.5, **rim))
-    draw_robot(ax, pose, marks(ax, 1.2))
+    draw_robot(ax, pose, marks(ax, 1.2), scale)
     ring = f"range {lidar.range_min:g} to {lidar.range_max:g} m"
     return [Line2D([], [], label=ring, **rim), Line2D([], [], label="robot", linestyle="none", **ROBOT_SIGN)]
 

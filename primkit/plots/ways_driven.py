@@ -69,7 +69,7 @@ def plot_drive(world: World, drive: Drive, n_frames: int = 6) -> Figure:
 
     Notes
     -----
-    Points are the grid's: cells of 1 mm that were hit, each counted when it was hit first.
+    Points are the grid's: cells of 1 mm, times the board's scale, that were hit, each counted when it was hit first.
     """
     check_type(world, World, "world must be of type World")
     check_type(drive, Drive, "drive must be of type Drive")
@@ -77,7 +77,7 @@ def plot_drive(world: World, drive: Drive, n_frames: int = 6) -> Figure:
     if n_frames == 0:
         raise ValueError("a drive must have scans to be drawn, got none")
     ends = np.linspace(0, len(drive), n_frames + 1).round().astype(int)
-    points, first = _first_seen(drive)
+    points, first = _first_seen(drive, world.cell)
     columns = 2 if n_frames == 4 else min(FRAMES_IN_A_ROW, n_frames)
     rows = -(-n_frames // columns)
     with plain():
@@ -175,9 +175,9 @@ def plot_change(
     return ax
 
 
-def _first_seen(drive: Drive) -> tuple[Floats, Ints]:
+def _first_seen(drive: Drive, cell: float) -> tuple[Floats, Ints]:
     """Return the grid's points, shape (N, 2), and the number of the scan that hit each first, shape (N,)."""
-    grid, scans = Grid(), drive.scans
+    grid, scans = Grid(cell), drive.scans
     cells, first = np.unique(grid.to_cells(scans.points()), axis=0, return_index=True)
     return grid.to_points(cells), np.nonzero(scans.hits)[0][first]
 
@@ -190,7 +190,7 @@ def _draw_frame(ax: Axes, world: World, poses: Floats, points: Floats, new: NDAr
     ax.plot(*poses[:, :2].T, zorder=2, **(WAY_LOOK | {"linewidth": marks(ax, 1.2)}))
     for look, those in ((SEEN_BEFORE, ~new), (SEEN_NEW, new)):
         ax.plot(*points[those].T, zorder=3, **(look | {"markersize": marks(ax, look["markersize"])}))
-    draw_robot(ax, poses[-1])
+    draw_robot(ax, poses[-1], scale=world.scale)
 
 
 def _keep_outer_labels(ax: Axes, *, left: bool, below: bool) -> None:

@@ -1,6 +1,5 @@
 // The board in the page: draws what the robot knows. Cells come as an array, or as a map's values.
 
-const FAR = 1e-4; // m: lengths come in tenths of a millimetre
 const SMALL = 400; // px: in narrower pictures shapes have their kind written on them, and not their sizes
 const PLAIN = "12px system-ui, sans-serif", LABEL = `600 ${PLAIN}`, SIGN = "700 18px system-ui, sans-serif";
 const DARK = 0.4; // a background that is darker than this share of white is a dark one
@@ -68,6 +67,7 @@ class Picture {
     this.low = 40; // px: room for the scales, left of the board and below it
     this.scale = (width - this.low - 8) / board.size;
     this.half = board.size / 2;
+    this.unit = board.unit; // m: lengths come in tenths of a millimetre, times the board's scale
     this.width = width;
     this.color = theme(this.root, look);
     this.unseen(known);
@@ -94,7 +94,7 @@ class Picture {
   }
 
   tenths(points) {
-    return points.map(([x, y]) => [x * FAR, y * FAR]);
+    return points.map(([x, y]) => [x * this.unit, y * this.unit]);
   }
 
   line(points, color, width, dash = [], alpha = 1) {
@@ -126,7 +126,7 @@ class Picture {
     const h = this.half, { low } = this, { ink } = this.color;
     this.line([[-h, -h], [h, -h], [h, h], [-h, h], [-h, -h]], ink, 1);
     for (const share of [-0.4, -0.2, 0, 0.2, 0.4]) {
-      const value = share * size, text = value.toFixed(size < 1 ? 2 : 1).replace("-", "−");
+      const value = share * size, text = value.toFixed(Math.max(0, 1 - Math.floor(Math.log10(size)))).replace("-", "−");
       const [x, y] = this.at([value, -h]);
       this.words(text, [x, y + 10], ink, "center");
       this.words(text, [low - 4, this.at([0, value])[1]], ink, "right");
@@ -155,7 +155,7 @@ class Picture {
   }
 
   places(automatic) {
-    const { "way-points": points = [], explore = [] } = automatic?.places ?? {}, arm = 0.008;
+    const { "way-points": points = [], explore = [] } = automatic?.places ?? {}, arm = 80 * this.unit;
     for (const [x, y] of this.tenths(points)) {
       this.line([[x - arm, y], [x + arm, y]], this.color.grey, 1);
       this.line([[x, y - arm], [x, y + arm]], this.color.grey, 1);
@@ -168,7 +168,7 @@ class Picture {
   beams({ pose: [x, y, heading], ranges, board }) {
     ranges.forEach((range, beam) => {
       const bearing = heading + (2 * Math.PI * beam) / ranges.length;
-      const far = range < 0 ? board.reach : range * FAR;
+      const far = range < 0 ? board.reach : range * board.unit;
       const end = [x + far * Math.cos(bearing), y + far * Math.sin(bearing)];
       this.line([[x, y], end], this.color.beam, 1, range < 0 ? [2, 4] : [], range < 0 ? 0.35 : 0.9);
       if (range < 0) return;
@@ -234,8 +234,9 @@ class Picture {
 // All that is on the board, in words.
 
 function told({ board, pose, shapes, rest }) {
-  const [x, y, heading] = pose.map((value, i) => (i < 2 ? value.toFixed(2) : Math.round((value * 180) / Math.PI)));
-  const at = ([across, up]) => `at ${(across * FAR).toFixed(2)}, ${(up * FAR).toFixed(2)}`;
+  const metres = (length) => length.toFixed(Math.max(0, Math.round(-2 - Math.log10(board.unit))));
+  const [x, y, heading] = pose.map((value, i) => (i < 2 ? metres(value) : Math.round((value * 180) / Math.PI)));
+  const at = ([across, up]) => `at ${metres(across * board.unit)}, ${metres(up * board.unit)}`;
   const robot = `A board of ${board.size} m. The robot is at ${x}, ${y} m, heading ${heading} degrees.`;
   const names = shapes.map(({ certain, name, place }) => `${certain ? name : "something not certain"} ${at(place)}`);
   return `${robot} ${names.length ? `Found: ${names.join("; ")}.` : "No shape found yet."}${rest ? ` Also ${rest}.` : ""}`;

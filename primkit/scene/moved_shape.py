@@ -19,7 +19,7 @@ import numpy as np
 
 from ..arguments import Bools, Floats
 from ..driving.moving_grid import MovingGrid
-from ..measure import Detection
+from ..measure import CELL, Detection
 from ..robot import CLEAR, clearance
 from ..seen import share_seen
 from ..shapes import Shape
@@ -48,23 +48,26 @@ def move_one_shape(world: World, pose: Floats, rng: np.random.Generator) -> Worl
     """
     if not world.shapes:
         return None
+    small = world.scaled(1 / world.scale)
     for _ in range(MOVE_TRIES):
         chosen, bearing = int(rng.integers(len(world.shapes))), rng.uniform(0, 2 * np.pi)
         way = rng.uniform(LEAST_MOVED, MOST_MOVED) * np.array([np.cos(bearing), np.sin(bearing)])
-        new = world.shapes[chosen].moved(way, rng.uniform(-MOST_TURNED, MOST_TURNED))
-        rest = [shape for number, shape in enumerate(world.shapes) if number != chosen]
-        if _has_room(new, rest, world.size, pose):
-            return World([*rest[:chosen], new, *rest[chosen:]], size=world.size, walls=world.walled)
+        new = small.shapes[chosen].moved(way, rng.uniform(-MOST_TURNED, MOST_TURNED))
+        rest = [shape for number, shape in enumerate(small.shapes) if number != chosen]
+        if _has_room(new, rest, small.size, pose[:2] / world.scale):
+            shapes = list(world.shapes)
+            shapes[chosen] = new.scaled(world.scale)
+            return World(shapes, size=world.size, walls=world.walled)
     return None
 
 
-def _has_room(shape: Shape, rest: list[Shape], size: float, pose: Floats) -> bool:
+def _has_room(shape: Shape, rest: list[Shape], size: float, robot: Floats) -> bool:
     """Tell whether a shape keeps its distance to the others, to the edge, and to the robot."""
     if np.abs(shape.outline(100)).max() > size / 2 - EDGE_GAP:
         return False
     if any(gap_between(shape, one) < SHAPE_GAP for one in rest):
         return False
-    return float(clearance(World([shape], size=size), pose[None, :2])[0]) > 10 * CLEAR
+    return float(clearance(World([shape], size=size), robot[None])[0]) > 10 * CLEAR
 
 
 def find_left_within(grid: MovingGrid, found: Iterable[Detection]) -> Bools:
@@ -72,11 +75,11 @@ def find_left_within(grid: MovingGrid, found: Iterable[Detection]) -> Bools:
 
     Only shapes of which ``MOSTLY_SEEN`` was seen count.
     """
-    points, last = grid.points(), grid.last_seen
+    points, last, depth = grid.points(), grid.last_seen, WITHIN_DEPTH / CELL * grid.resolution
     left = np.zeros(len(points), dtype=bool)
     for one in found:
         apart = one.shape.signed_distance(points)
-        own = np.abs(apart) <= WITHIN_DEPTH
-        if own.any() and share_seen(one.shape, one.points) >= MOSTLY_SEEN:
-            left |= (apart < -WITHIN_DEPTH) & (last < np.median(last[own]))
+        own = np.abs(apart) <= depth
+        if own.any() and share_seen(one.shape, one.points, grid.resolution) >= MOSTLY_SEEN:
+            left |= (apart < -depth) & (last < np.median(last[own]))
     return left

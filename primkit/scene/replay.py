@@ -26,12 +26,14 @@ from ..driving.mapper import Mapper, unmended
 from ..evaluation import evaluate
 from ..formats import Drive
 from ..grid import Grid
+from ..lidar import Lidar
+from ..measure import CELL
 from ..steps import Steps
 from ..table import count
-from ..world import World
+from ..world import World, scale_of
 from .finder import Look
 from .given_back import made_before
-from .page import Message, board_and_look, count_found, page, ring_of, tell_ranges, tenths
+from .page import Message, board_and_look, count_found, page, tell_ranges, truth_in
 
 GROWTH = 1.2  # so many times the cells are worth another look
 MOST_RANGE = 32_767  # tenths of a millimetre: ranges go to the page as whole numbers of 16 bits
@@ -71,20 +73,21 @@ def replay(drive: Drive, world: World | None = None, *, steps: Steps | None = No
     check_type(rng, int, "rng must be a seed, a whole number")
     if len(drive) == 0:
         raise ValueError("a drive must have scans to be played, got none")
-    return Replay(drive, world, Film(drive, steps, rng))
+    scale = scale_of(drive.lidar.range_max / Lidar.range_max) if world is None else world.scale
+    return Replay(drive, world, Film(drive, steps, rng, scale))
 
 
 class Film:
-    """What is new with each scan of a ``Drive``; ``rng`` is the seed for the search."""
+    """What is new with each scan of a ``Drive``; ``rng`` is the seed for the search, ``scale`` that of the board."""
 
-    def __init__(self, drive: Drive, steps: Steps | None = None, rng: int = 0) -> None:
-        grid, scans = Grid(), drive.scans
+    def __init__(self, drive: Drive, steps: Steps | None = None, rng: int = 0, scale: float = 1.0) -> None:
+        grid, scans, self.scale = Grid(CELL * scale), drive.scans, scale
         cells, first = np.unique(grid.to_cells(scans.points()), axis=0, return_index=True)
         scan_of = np.nonzero(scans.hits)[0][first]
         order = np.argsort(scan_of, kind="stable")
         self.cells: Ints = cells[order]  # in the order in which they were seen, shape (M, 2)
         self.known: Ints = np.searchsorted(scan_of[order], np.arange(len(drive)), side="right")  # after each scan
-        self.looks = self._looked_at(drive, Mapper(settings=unmended(steps), steps=steps, rng=rng))
+        self.looks = self._looked_at(drive, Mapper(grid.resolution, settings=unmended(steps), steps=steps, rng=rng))
 
     def _looked_at(self, drive: Drive, mapper: Mapper) -> list[Look]:
         """Return the shapes on the way, whenever the map has grown enough, and in the end."""
@@ -123,16 +126,16 @@ class Replay(anywidget.AnyWidget):
 
     def told(self) -> Message:
         """Return all but the ranges and the cells, which go to the page as numbers of two and of four bytes."""
-        drive, truth = self.drive, () if self.world is None else self.world.shapes
-        size = 1.0 if self.world is None else self.world.size
+        drive, scale = self.drive, self.film.scale
+        size = scale if self.world is None else self.world.size
         looks = [{"scan": look.n_scans - 1, "score": self._score(look)} | look.drawn for look in self.film.looks]
-        return board_and_look(size, drive.lidar, Grid().resolution) | {
-            "poses": np.round(drive.poses, 5).tolist(),
+        return board_and_look(size, drive.lidar, scale) | {
+            "poses": np.round(drive.poses, 6).tolist(),
             "beams": drive.lidar.beams,
             "period": drive.period,
             "known": self.film.known.tolist(),
             "looks": looks,
-            "truths": [tenths(ring_of(shape)) for shape in truth],
+            "truths": truth_in(self.world),
         }
 
     def _score(self, look: Look) -> str:
@@ -142,4 +145,4 @@ class Replay(anywidget.AnyWidget):
 
     def _ranges(self) -> NDArray[np.int16]:
         """Return ranges in tenths of a millimetre, shape (P, B), -1 where nothing was hit."""
-        return np.minimum(tell_ranges(self.drive.scans.ranges), MOST_RANGE).astype("<i2")
+        return np.minimum(tell_ranges(self.drive.scans.ranges, self.film.scale), MOST_RANGE).astype("<i2")

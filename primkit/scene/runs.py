@@ -61,7 +61,8 @@ def automatic_runs(world: World, lidar: Lidar, rng: int, steps: Steps | None = N
 
 def _scan_from_waypoints(world: World, lidar: Lidar, rng: int, steps: Steps | None) -> Run:
     """Scan from the paper's way-points, all of whose periods count, and find what is there."""
-    poses, mapper = teleport_poses(world), Mapper(settings=unmended(steps), steps=steps, rng=rng)
+    poses = teleport_poses(world)
+    mapper = Mapper(world.cell, settings=unmended(steps), steps=steps, rng=rng)
     mapper.add(scan(world, poses, lidar, rng=rng))
     found = mapper.found
     note = "the robot is set down at each; the ways between are not counted"

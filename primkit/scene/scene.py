@@ -34,7 +34,7 @@ from .finder import Beside, Look
 from .given_back import made_before
 from .keys import wheels_for
 from .own_steps import StepError
-from .page import Message, board_and_look, count_found, page, ring_of, tell_ranges, tenths
+from .page import Message, board_and_look, count_found, page, tell_ranges, tenths, truth_in
 from .runs import Run, automatic_runs, compare_runs
 from .state import DriveState
 
@@ -221,14 +221,15 @@ class Scene(anywidget.AnyWidget):
         """Return what every step changes: pose, ranges, time, score."""
         state = self.state
         record = state.trouble or (f"recording {state.record.name}" if state.record else "")
-        pose, ranges = [round(float(value), 5) for value in state.pose], tell_ranges(state.scan.ranges[0]).tolist()
+        pose = [round(float(value), 6) for value in state.pose]
+        ranges = tell_ranges(state.scan.ranges[0], state.world.scale).tolist()
         return {"pose": pose, "ranges": ranges, "scans": state.n_scans, "score": self._score(), "record": record}
 
     def _send_all(self, say: str = "") -> None:
         """Send all that there is: to a page that knows nothing, or shall forget what it knows."""
         state = self.state
         self._shown = state.last
-        same = board_and_look(state.world.size, state.lidar, state.grid.resolution) | {"moving": state.moving}
+        same = board_and_look(state.world.size, state.lidar, state.world.scale) | {"moving": state.moving}
         all_ = self._shown.drawn | {"cells": state.grid.cells.tolist(), "automatic": self._compared}
         self.send(self._now() | same | all_ | self._truth() | {"paused": self.paused, "say": say, "busy": self._busy})
         self._send_unseen()
@@ -242,8 +243,7 @@ class Scene(anywidget.AnyWidget):
         self.send({"unseen": len(unseen)}, [np.packbits(unseen).tobytes()])
 
     def _truth(self) -> Message:
-        shown = self.state.world.shapes if self.shows_truth else ()
-        return {"truth": [tenths(ring_of(shape)) for shape in shown], "truthful": self.shows_truth}
+        return {"truth": truth_in(self.state.world if self.shows_truth else None), "truthful": self.shows_truth}
 
     def _move_something(self) -> None:
         """Move a shape; what the robot has seen of it stays until it looks again."""
@@ -270,7 +270,7 @@ class Scene(anywidget.AnyWidget):
         except Exception as error:
             self._automatic = None
             return {"say": f"The robot cannot drive by itself here: {type(error).__name__}: {error}"}
-        places = {run.name: tenths(run.way) for run in automatic}
+        places = {run.name: tenths(run.way, self.state.world.scale) for run in automatic}
         table = compare_runs((self.state.by_hand(), *automatic))
         say = {} if self._compared else {"say": "The robot has driven by itself, too: see the table."}
         self._compared = {"table": [table.header, *table.rows], "places": places}

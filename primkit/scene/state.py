@@ -92,7 +92,7 @@ class DriveState:
         executor: Executor | None = None,
     ) -> None:
         check_type(world, World, "world must be a World, as in drive_scene(world)")
-        self.lidar, self.seed, self.moving = as_lidar(lidar), rng, moving
+        self.lidar, self.seed, self.moving = as_lidar(lidar, world.scale), rng, moving
         check_type(moving, bool, "moving must be True or False")
         self.steps = steps
         self.own = OwnSteps(Steps() if steps is None else steps)
@@ -112,7 +112,8 @@ class DriveState:
         self._end_journal()
         self.trouble = ""  # why the journal could not be written, in one sentence
         self.world, self.pose, self.n_scans, self.stopped = self._start_world, start_pose(self._start_world), 0, False
-        self._map_anew(MovingGrid(lidar=self.lidar) if self.moving else Grid())
+        cell = self.world.cell
+        self._map_anew(MovingGrid(cell, self.lidar) if self.moving else Grid(cell))
         self._cells = self.grid.cells  # as they were told last
         self.last = Look.at(Found(), 0)  # the last look that was done
         self._scored = (self.last, self.world, 0.0)
@@ -258,7 +259,7 @@ class DriveState:
 
     def unseen(self) -> NDArray[np.bool_]:
         """Return which squares of a centimetre may still hide a shape, shape (N, N), as ``SeenMap`` numbers them."""
-        explained = self.seen_map.covered(outlines_in(self.found), EXPLAINED)
+        explained = self.seen_map.covered(outlines_in(self.found, self.world.scale), EXPLAINED)
         return self.seen_map.hiding_places(explained)
 
     def compare(self) -> Table:

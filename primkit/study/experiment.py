@@ -66,8 +66,8 @@ class Experiment:
         it; the oracle is told everything.
     lidar : Lidar
         The sensor.
-    tolerance : float
-        Of the fair protocol, in metres.
+    tolerance : float, optional
+        Of the fair protocol, in metres; as ``evaluate`` has it when not given.
     seed : int
         The study's seed.
     drive : array, shape (P, 3), optional
@@ -79,7 +79,7 @@ class Experiment:
     name: str
     settings: Settings | Oracle
     lidar: Lidar = Lidar()  # noqa: RUF009 - frozen, so that sharing it is safe
-    tolerance: float = 0.005
+    tolerance: float | None = None
     seed: int = 0
     drive: Floats | None = None
 
@@ -151,7 +151,7 @@ def perform(experiment: Experiment) -> Row:
         settings=experiment.name,
         kinds=tuple(shape.kind for shape in experiment.world.shapes),
         movement="automatic" if experiment.drive is None else "manual",
-        tolerance=experiment.tolerance,
+        tolerance=fair.tolerance,
         told=run_.told is not None,
         n_found=len(run_.found),
         fair=_score(fair),
@@ -202,11 +202,11 @@ def _find(experiment: Experiment, scans: Scans, rng: np.random.Generator) -> tup
     """Return the grid's points, the number of shapes that was told, and what the method found."""
     world, settings = experiment.world, experiment.settings
     if isinstance(settings, Oracle):
-        points, owners = told_points(world, scans, experiment.lidar)
+        points, owners = told_points(world, scans, experiment.lidar, world.cell)
         fits = enumerate(oracle_fit(world, points, owners))
         found = Found(detection(fit, points[owners[:, 0] == i], np.inf) for i, fit in fits if fit is not None)
         return points, len(world.shapes), found
-    grid = Grid()
+    grid = Grid(world.cell)
     grid.add(scans)
     points = grid.points()
     # More shapes than points cannot be asked for, and a faulty sensor may see nearly nothing.

@@ -34,7 +34,7 @@ from numpy.typing import ArrayLike
 
 from ..arguments import as_count, as_poses, as_positive, check_type, short
 from ..formats import MAP_ENDINGS, StrPath, load_world, published_suite
-from ..lidar import Lidar
+from ..lidar import Lidar, as_lidar
 from ..pipeline import PAPER, ROBUST, Settings
 from ..world import World
 from .experiment import Experiment, perform
@@ -52,7 +52,7 @@ def run_study(
     settings: Mapping[str, Settings | Oracle] = METHODS,
     *,
     lidar: Lidar | None = None,
-    tolerance: float = 0.005,
+    tolerance: float | None = None,
     seed: int = 0,
     drives: Mapping[str, ArrayLike] | None = None,
     folder: StrPath | None = None,
@@ -70,9 +70,9 @@ def run_study(
         The methods by name. The published one is told the number of shapes when it groups by K-Means, the others
         find it. ``ORACLE`` is the fit that is told which point belongs to which side.
     lidar : Lidar, optional
-        The sensor; the paper's by default. All methods get the same scans of a map.
-    tolerance : float
-        Of the fair protocol, in metres.
+        The sensor; the paper's, of each board's scale, by default. All methods get the same scans of a map.
+    tolerance : float, optional
+        Of the fair protocol, in metres; 5 mm, times each board's scale, when not given.
     seed : int
         The same seed gives the same rows, bit for bit, times apart.
     drives : dict of str to array_like, shape (P, 3), optional
@@ -104,15 +104,14 @@ def run_study(
     []
     """
     common = {
-        "lidar": Lidar() if lidar is None else lidar,
-        "tolerance": as_positive(tolerance, "tolerance", zero=True),
+        "tolerance": tolerance if tolerance is None else as_positive(tolerance, "tolerance", zero=True),
         "seed": as_count(seed, "seed", least=0),
     }
-    check_type(common["lidar"], Lidar, "lidar must be Lidar")
+    as_lidar(lidar)  # refused before anything is done
     for chosen in settings.values():
         check_type(chosen, (Settings, Oracle), "each of the settings must be Settings")
     jobs, worlds = checked_jobs(jobs), published_suite() if worlds is None else worlds
-    experiments = _experiments(worlds, settings, drives, common)
+    experiments = _experiments(worlds, settings, lidar, drives, common)
     total = len(worlds) * len(settings) if isinstance(worlds, Sized) else None
     return perform_all(experiments, folder=folder, jobs=jobs, total=total, progress=progress)
 
@@ -177,6 +176,7 @@ def maps_in(paths: Iterable[StrPath]) -> dict[str, World]:
 def _experiments(
     worlds: Mapping[str, World] | Iterable[World],
     settings: Mapping[str, Settings | Oracle],
+    lidar: Lidar | None,
     drives: Mapping[str, ArrayLike] | None,
     common: Mapping[str, Any],
 ) -> Iterator[Experiment]:
@@ -188,7 +188,7 @@ def _experiments(
             raise ValueError(f"drives must hold one for each map, got none for {map_name!r}")
         drive = None if drives is None else as_poses(drives[map_name])
         for name, chosen in settings.items():
-            yield Experiment(map_name, world, name, chosen, drive=drive, **common)
+            yield Experiment(map_name, world, name, chosen, lidar=as_lidar(lidar, world.scale), drive=drive, **common)
 
 
 def _performed(

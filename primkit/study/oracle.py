@@ -27,7 +27,7 @@ import numpy as np
 
 from ..arguments import Floats, Ints
 from ..grid import Grid
-from ..lidar import Lidar, Scans
+from ..lidar import Lidar, Scans, as_lidar
 from ..raycast import cast_rays
 from ..seen import share_seen
 from ..shapes import Circle, Polygon, Shape
@@ -77,7 +77,7 @@ def told_points(
     The true hit of a beam tells the side; noise moves the point along the beam. A cell that was hit from several
     sides belongs to the first. A rendered LiDAR has no true hit: its points belong to the side they are nearest to.
     """
-    lidar = Lidar() if lidar is None else lidar
+    lidar = as_lidar(lidar, world.scale)
     grid = Grid(resolution)
     cells, first = np.unique(grid.to_cells(scans.points()), axis=0, return_index=True)
     if lidar.model == "webots":
@@ -117,7 +117,8 @@ def shares_seen(world: World, scans: Scans, lidar: Lidar) -> tuple[float, ...]:
     [0.4, 0.0]
     """
     hits, owners = exact_hits(world, scans, lidar)
-    return tuple(share_seen(shape, hits[owners[:, 0] == number]) for number, shape in enumerate(world.shapes))
+    own = ((shape, hits[owners[:, 0] == number]) for number, shape in enumerate(world.shapes))
+    return tuple(share_seen(shape, points, world.cell) for shape, points in own)
 
 
 def hit_sides(world: World, hits: Floats) -> Ints:
