@@ -6,7 +6,9 @@ import sys
 import tempfile
 import time
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 import nbformat
 import numpy as np
@@ -20,6 +22,7 @@ from primkit.course import confining, executing, own_kernel
 from primkit.course.course import new_course
 from primkit.course.executing import CarefulExecute
 from primkit.course.grading import MIME, Part, Task, serving
+from primkit.course.grading.judging import hidden_tests_of
 from primkit.course.grading.plain_values import pack, unpack
 from primkit.course.grading.task import missing
 from primkit.course.grading.workers import Ended, OutOfTime, Workers
@@ -204,8 +207,9 @@ def test_an_endless_loop_costs_its_part_alone_and_is_tried_twice():
 
 
 @needs_fork
-def test_t17_waiting_for_a_busy_machine_is_no_fault():
+def test_t17_waiting_for_a_busy_machine_is_no_fault(monkeypatch):
     """What counts is the processor's time: twice the limit on the clock, and next to none of it."""
+    monkeypatch.setattr(Check.__call__, "__defaults__", (0.01,))  # a lesson's limit times the judge, not the student
 
     def waits(v):
         time.sleep(0.3)
@@ -321,13 +325,7 @@ def graded(course, name, cells=None, **answers):
     notebook.cells += [nbformat.v4.new_code_cell(source) for source in cells or ()]
     execute = CarefulExecute(course=str(course), timeout=20)
     about_it = {"student": "demonstration", "assignment": name, "notebook": name}
-    sys.path.insert(0, str(course))
-    try:
-        execute.preprocess(notebook, {"metadata": {"path": str(path.parent)}, "nbgrader": about_it})
-    finally:
-        sys.path.remove(str(course))
-        for module in [each for each in sys.modules if each.split(".")[0] == "grader"]:
-            del sys.modules[module]
+    execute.preprocess(notebook, {"metadata": {"path": str(path.parent)}, "nbgrader": about_it})
     cells_of = {about(cell)["grade_id"]: cell for cell in notebook.cells if about(cell).get("grade")}
     return {each: determine_grade(cell) for each, cell in cells_of.items()}, notebook
 
@@ -390,6 +388,20 @@ def test_without_fork_the_kernel_itself_answers(course, monkeypatch):
     points, _ = graded(course, "halves", **ANSWERS_OF)
     reached = {task: points[f"{task}-visible"][0] + points[f"{task}-hidden"][0] for task in ANSWERS_OF}
     assert reached == {"plain": 4, "late": 4, "own": 4, "broken": 0, "loop": 0, "absent": 0}
+
+
+def test_the_hidden_tests_are_those_of_the_course_whatever_was_imported_before(course, monkeypatch):
+    other = ModuleType("grader")
+    monkeypatch.setitem(sys.modules, "grader", other)
+    monkeypatch.setitem(sys.modules, "grader.halves", ModuleType("grader.halves"))
+    for _ in range(2):  # and they may have changed since the last time
+        with hidden_tests_of(course):
+            read = import_module("grader.halves")
+            assert read.__file__ == str(course / "grader" / "halves.py")
+            assert not hasattr(read, "seen")
+            read.seen = True
+    assert sys.modules["grader"] is other
+    assert str(course) not in sys.path
 
 
 def test_without_walls_every_report_says_so(course, monkeypatch):

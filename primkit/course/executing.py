@@ -36,7 +36,7 @@ from ..formats import save_scans
 from ..world import World
 from .confining import UNCOUNTED, UNPROTECTED, confined_by, processes_are_limited
 from .course import SCANS, Course
-from .grading.judging import Judging
+from .grading.judging import Judging, hidden_tests_of
 from .grading.own_board import board_of
 from .grading.task import Missing, missing
 from .grading.workers import Workers
@@ -99,12 +99,12 @@ class CarefulExecute(OwnKernel):
             self.processes()  # what is still there is ended
 
     def _judge(self) -> None:
-        for index, cell in enumerate(self.nb.cells):
-            if self.judging and (name := self._graded(cell)):
-                cell.source = self.judging.graded[name]["source"]
-                with board_of(self.world), chdir(self.given):
+        with hidden_tests_of(Path(self.course).resolve()), board_of(self.world), chdir(self.given):
+            for index, cell in enumerate(self.nb.cells):
+                if self.judging and (name := self._graded(cell)):
+                    cell.source = self.judging.graded[name]["source"]
                     cell.outputs = self.judging.outputs(name, index, self.workers)
-                self._note_judged(index)
+                    self._note_judged(index)
 
     def _graded(self, cell: Any) -> str | None:
         """Return the name of a cell that the judge runs."""

@@ -58,7 +58,7 @@ def nbgrader(course: Course, *words: str, log: Path | None = None, seconds: floa
             done = subprocess.run(
                 command,
                 cwd=course.root,
-                env=_environment(course),
+                env=_environment(),
                 stdin=subprocess.DEVNULL,
                 stdout=said,
                 stderr=subprocess.STDOUT,
@@ -76,8 +76,7 @@ def nbgrader(course: Course, *words: str, log: Path | None = None, seconds: floa
     return result
 
 
-def _environment(course: Course) -> dict[str, str]:
-    """Return an environment that finds ``grader``, and alembic, which nbgrader calls by its name."""
-    first = {"PYTHONPATH": str(course.root), "PATH": sysconfig.get_path("scripts")}
-    joined = {name: os.pathsep.join(filter(None, [value, os.environ.get(name)])) for name, value in first.items()}
-    return {**os.environ, **joined, "PYTHONUTF8": "1"}
+def _environment() -> dict[str, str]:
+    """Return an environment that finds alembic, which nbgrader calls by its name."""
+    paths = filter(None, [sysconfig.get_path("scripts"), os.environ.get("PATH")])
+    return {**os.environ, "PATH": os.pathsep.join(paths), "PYTHONUTF8": "1"}

@@ -12,12 +12,13 @@ Out: the outputs of a graded cell, from which nbgrader reads the points.
 from __future__ import annotations
 
 import ast
+import importlib
 import io
 import json
 import symtable
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import redirect_stderr, redirect_stdout
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,7 @@ from .task import Missing
 from .workers import Ended, OutOfTime, Workers
 
 FILE = "<graded cell>"
+HIDDEN_TESTS = "grader"  # the course's package
 CELL_SECONDS = 10.0  # of processor time for the calls of one graded cell; each part of a task has its own
 
 
@@ -106,6 +108,25 @@ class Judging:
             self.ran.append(k)
         if "matplotlib.pyplot" in sys.modules:
             sys.modules["matplotlib.pyplot"].close("all")
+
+
+@contextmanager
+def hidden_tests_of(course: Path) -> Iterator[None]:
+    """Let graded cells import a course's hidden tests as they are now: a page of Jupyter's grades many times."""
+    others = _without_hidden_tests()
+    sys.path.insert(0, str(course))
+    importlib.invalidate_caches()
+    try:
+        yield
+    finally:
+        sys.path.remove(str(course))
+        _without_hidden_tests()
+        sys.modules.update(others)
+
+
+def _without_hidden_tests() -> dict[str, Any]:
+    """Forget the hidden tests that were imported, and return them."""
+    return {name: sys.modules.pop(name) for name in [*sys.modules] if name.partition(".")[0] == HIDDEN_TESTS}
 
 
 def _about(cell: dict[str, Any]) -> dict[str, Any]:

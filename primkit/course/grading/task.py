@@ -17,6 +17,7 @@ cross: arguments go to it, and results come back, through ``plain_values.py``.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -57,7 +58,8 @@ class Part:
         """Judge a function, whatever it does, within so many seconds where they can be told: see ``Remote``."""
         name = self.check.name
         try:
-            return _name_fault(self.check(function.afresh(seconds) if callable(function) else function))
+            # The process that answers is timed, and not this one, which waits for it.
+            return _name_fault(self.check(function.afresh(seconds) if callable(function) else function, math.inf))
         except OutOfTime:
             says = f"{name} did not end within {seconds:g} s: is there a loop that never ends, or is it too slow?"
             return Answer("error", says, "out of time")
