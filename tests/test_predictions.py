@@ -23,7 +23,7 @@ def folder(tmp_path, monkeypatch):
 
 def controls(name):
     """The control of a question, and what is said of it."""
-    _ask, control, said = pk.widgets.predict(name).panel().children
+    _ask, control, said, _attendant = pk.widgets.predict(name).panel().children
     return control, said
 
 

@@ -3,13 +3,17 @@
 const LATE = 5000; // ms: an answer that has not come by then will not come
 const SILENT = "Python does not answer. Is another cell running? After a restart of the kernel, run this cell again.";
 
+// What stands beside a control, or else above it.
+const named = (control) =>
+  control.querySelector(".widget-label")?.textContent.trim() || control.previousElementSibling?.textContent.trim() || "";
+
 const tell = (slider) => {
   const [handle, readout] = [".noUi-handle", ".widget-readout"].map((part) => slider.querySelector(part));
   const say = () => {
     if (handle.getAttribute("aria-valuetext") !== readout.textContent)
       handle.setAttribute("aria-valuetext", readout.textContent);
   };
-  handle.setAttribute("aria-label", slider.querySelector(".widget-label").textContent);
+  handle.setAttribute("aria-label", named(slider));
   new MutationObserver(say).observe(handle, { attributes: true, attributeFilter: ["aria-valuetext"] });
   new MutationObserver(say).observe(readout, { childList: true, characterData: true, subtree: true });
   say();
@@ -35,7 +39,7 @@ function render({ model, el }) {
     panel.querySelectorAll(".widget-hslider").forEach(tell);
     for (const choice of panel.querySelectorAll(".widget-toggle-buttons")) {
       choice.setAttribute("role", "group");
-      choice.setAttribute("aria-label", choice.querySelector(".widget-label").textContent);
+      choice.setAttribute("aria-label", named(choice));
     }
     for (const move of ["keydown", "pointerup"]) panel.addEventListener(move, ask);
   };

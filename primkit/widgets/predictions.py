@@ -36,7 +36,7 @@ from .drawing import as_svg, path, stacked, what_it_says, words_at
 from .slider import Picture
 
 KEPT_IN = "my_guesses.json"
-WIDTH, ROW = 425, 26  # px: of the picture, and of an option in it
+ANSWER_WIDTH, OPTION_ROW = 425, 26  # px: of the picture, and of an option in it
 RIGHT = re.compile(r"(Right|Yes)\b")  # how the feedback to a quiz's right option begins
 
 
@@ -167,9 +167,10 @@ class Predictions:
 
     def panel(self) -> Any:
         """Return the widget: a row for each question."""
-        import ipywidgets
+        from .panel import attended
 
-        return ipywidgets.VBox([part for question in self.asked for part in self._row(question)])
+        parts = [part for question in self.asked for part in self._row(question)]
+        return attended(parts, sum(not question.options for question in self.asked)).add_class("primkit-predict")
 
     def _row(self, question: Question) -> tuple[Any, ...]:
         import ipywidgets
@@ -186,9 +187,7 @@ class Predictions:
         whole = float(question.step).is_integer()
         kind = ipywidgets.IntSlider if whole else ipywidgets.FloatSlider
         ends = {"min": question.low, "max": question.high, "step": question.step}
-        slider = kind(
-            kept.get("guess", question.low), **ends, continuous_update=False, description=question.unit or " "
-        )
+        slider = kind(kept.get("guess", question.low), **ends, continuous_update=False, description=question.unit)
         slider.observe(lambda change: guessed(change.new), names="value")
         return ask, slider, said
 
@@ -246,7 +245,7 @@ def _draw_options(question: Question, guess: str | None, value: float | str, say
     """Draw the options below each other: what came out is a full square, the guess a ring around it or another."""
     out, parts = question.option_of(value), []
     for row, option in enumerate(question.options):
-        y = 40 + ROW * row
+        y = 40 + OPTION_ROW * row
         is_out = option.says == out
         parts.append(path(f"M18 {y - 7}h14v14h-14Z", stroke=GREY, fill=BLUE if is_out else "white"))
         if option.says == guess:
@@ -254,7 +253,8 @@ def _draw_options(question: Question, guess: str | None, value: float | str, say
         mark = " \u2190 so it is" if is_out else ""
         yours = " (your guess)" if option.says == guess else ""
         parts.append(words_at(48, y + 5, option.says + yours + mark, color=INK, size=14, bold=is_out))
-    return as_svg(WIDTH, 40 + ROW * len(question.options), question.ask, says, _heading(question) + "".join(parts))
+    tall = 40 + OPTION_ROW * len(question.options)
+    return as_svg(ANSWER_WIDTH, tall, question.ask, says, _heading(question) + "".join(parts))
 
 
 def _draw_line(question: Question, guess: float | None, value: float | str, says: str) -> str:
@@ -263,21 +263,21 @@ def _draw_line(question: Question, guess: float | None, value: float | str, says
     low, high = min(question.low, number), max(question.high, number)
 
     def x_of(place: float) -> float:
-        return round(30 + (WIDTH - 60) * (place - low) / (high - low), 1)
+        return round(30 + (ANSWER_WIDTH - 60) * (place - low) / (high - low), 1)
 
-    x, parts = x_of(number), [path(f"M30 62H{WIDTH - 30}", stroke=PALE, stroke_width=3)]
+    x, parts = x_of(number), [path(f"M30 62H{ANSWER_WIDTH - 30}", stroke=PALE, stroke_width=3)]
     parts += [words_at(x_of(end), 106, f"{end:g}", anchor="middle") for end in (low, high)]
     parts.append(path(f"M{x} 66l7 12h-14Z", fill=BLUE))
-    at = min(max(x, 90), WIDTH - 90)
+    at = min(max(x, 90), ANSWER_WIDTH - 90)
     parts.append(words_at(at, 94, f"it is {question.words(number)}", color=BLUE, anchor="middle", size=14, bold=True))
     if guess is not None:
         g = x_of(guess)
         parts.append(path(f"M{g} 58l7 -12h-14Z", fill=VERMILION))
-        at = min(max(g, 90), WIDTH - 90)
+        at = min(max(g, 90), ANSWER_WIDTH - 90)
         parts.append(words_at(at, 41, f"you: {question.words(guess)}", color=VERMILION, anchor="middle", size=14))
-    return as_svg(WIDTH, 112, question.ask, says, _heading(question) + "".join(parts))
+    return as_svg(ANSWER_WIDTH, 112, question.ask, says, _heading(question) + "".join(parts))
 
 
 def _heading(question: Question) -> str:
-    size = min(14.0, round(WIDTH / (0.62 * len(question.ask)), 1))
+    size = min(14.0, round(ANSWER_WIDTH / (0.62 * len(question.ask)), 1))
     return words_at(10, 18, question.ask, color=INK, size=size, bold=True)
