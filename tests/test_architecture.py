@@ -52,7 +52,7 @@ ONLY_USER = {
     "matplotlib": ("plots",),
     "mpl_toolkits": ("plots",),
     "ipywidgets": ("widgets", "scene"),
-    "anywidget": ("scene",),
+    "anywidget": ("widgets", "scene"),
     "sklearn": ("segmentation", "paper"),
     "lazy_loader": ("__init__",),
 }

@@ -155,9 +155,14 @@ def pictures_without_words(lesson):
     return [
         f"no '*Figure: ...*' after: {source(cell)}"
         for cell, after in zip(lesson["cells"], following, strict=True)
-        if cell["cell_type"] == "code" and shows_a_picture(cell)
+        if cell["cell_type"] == "code" and shows_a_picture(cell) and not is_an_answer(cell)
         if not re.match(r"\*Figure: \S.{20,}?\*", source(after), re.DOTALL)
     ]
+
+
+def is_an_answer(cell):
+    """A prediction's answer: its picture is words, and they are read aloud."""
+    return "pk.widgets.answer(" in source(cell) and not outputs(cell, "image/png")
 
 
 def missing_parts(lesson):
@@ -171,14 +176,10 @@ def missing_parts(lesson):
 
 
 def slider_without_twin(lesson):
-    """The slider is for who runs the lesson; its twin for who reads it."""
-    cells = code_cells(lesson)
-    shown = [re.search(r"^pk\.widgets\.(\w+)\(\)$", source(cell), re.MULTILINE) for cell in cells]
-    sliders = {match[1] for cell, match in zip(cells, shown, strict=True) if match and is_slider(cell)}
-    twins = {
-        name for name in sliders for cell in cells if f"widgets.{name}().twin(" in source(cell) if shows_a_picture(cell)
-    }
-    return ([] if sliders else ["no slider"]) + [f"no twin of {name}" for name in sorted(sliders - twins)]
+    """The slider is for who runs the lesson; its twin, in the same cell, for who reads it."""
+    cells = [cell for cell in code_cells(lesson) if re.fullmatch(r"pk\.widgets\.\w+\(\)", source(cell).strip())]
+    sliders = list(filter(is_slider, cells))
+    return ([] if sliders else ["no slider"]) + [f"no twin: {source(c)}" for c in sliders if not shows_a_picture(c)]
 
 
 def is_slider(cell):
@@ -347,7 +348,7 @@ def no_figure(lesson):
 
 
 def no_figure_of_the_twin(lesson):
-    place = next(i for i, c in enumerate(lesson["cells"]) if ".twin(" in source(c))
+    place = next(i for i, c in enumerate(lesson["cells"]) if c["cell_type"] == "code" and is_slider(c))
     lesson["cells"][place + 1]["source"] = "*Figure: twin*"
 
 
@@ -362,7 +363,8 @@ def other_order(lesson):
 
 
 def no_twin(lesson):
-    first(lesson, r"\.twin\(")["outputs"] = []
+    for cell in filter(is_slider, code_cells(lesson)):
+        cell["outputs"] = cell["outputs"][:1]
 
 
 def no_slider(lesson):

@@ -831,8 +831,12 @@ def turned(points):
         ),
         ({"fit_line": pk.fit_line}, {"fit_line": turned}),
         ({"fit_circle": pk.fit_circle}, {"fit_circle": lambda points: (*points.mean(axis=0), 0.2)}),
+        (
+            {"measure": lambda points: pk.measure_shape(points, 0.0004).shape},
+            {"measure": lambda points: pk.Circle(points.mean(axis=0), 0.2)},
+        ),
     ],
-    ids=["linking", "K-Means", "line", "circle"],
+    ids=["linking", "K-Means", "line", "circle", "measure"],
 )
 def test_a_wrong_step_invents_what_is_not_there_or_explains_nothing(right, wrong):
     """The same scans with a right step and with a wrong one."""

@@ -12,6 +12,7 @@ import primkit as pk
 from primkit.palette import KIND_COLORS
 from primkit.themed import in_theme
 from primkit.widgets.drawing import (
+    ENTRY,
     MARKERS,
     Frame,
     board_frame,
@@ -32,6 +33,7 @@ CORNERS = [
     for name, factory in SLIDERS.items()
     for corner in factory().corners()
 ]
+ENTRIES = re.compile(r'<g class="entry" transform="translate\([^ ]+ ([^)]+)\)">.*?<text[^>]*>([^<]*)</text></g>')
 KEY_TO_PICTURE = 0.05  # s of the processor's time: with the browser's share this stays fluent; mostly it is half of it
 
 
@@ -118,7 +120,7 @@ def test_the_panel_has_a_named_control_for_each_value_and_a_button_for_each_sett
 
 def parts(slider):
     """The controls of a panel, the row of its buttons, its picture and what that says."""
-    (controls, image), readout = (slider.panel.children[0].children, slider.panel.children[1])
+    (controls, image), readout = slider.panel.children[0].children, slider.panel.children[1]
     return [*controls.children, image, readout]
 
 
@@ -313,6 +315,35 @@ def test_something_else_is_no_picture():
         size_of("<p>")
 
 
-def test_a_lesson_reaches_its_slider_by_name():
-    assert isinstance(pk.widgets.rays(), Explorer)
-    assert pk.widgets.rays() is pk.widgets.rays()
+def test_two_settings_of_a_slider_can_be_compared():
+    """Each call makes one of its own."""
+    one, other = pk.widgets.rays(), pk.widgets.rays()
+    one.set(beams=24)
+    assert isinstance(one, Explorer)
+    assert "of 24 beams" in parts(one)[-1].value
+    assert "of 100 beams" in parts(other)[-1].value
+
+
+def test_the_notebook_is_shown_the_panel_and_its_twin_and_the_panel_answers_the_page(monkeypatch):
+    shown = []
+    monkeypatch.setattr("IPython.display.display", lambda what, **_: shown.append(what))
+    slider = pk.widgets.rays()
+    slider._ipython_display_()
+    assert shown[0]["text/plain"] == repr(slider)
+    assert repr(shown[1]) == repr(slider.twin())
+    attendant, sent = slider.panel.children[-1], []
+    attendant.send = lambda *message: sent.append(message)
+    assert attendant.sliders == 6
+    attendant._handle_custom_msg({}, [])
+    assert len(sent) == 1
+
+
+def test_a_legend_stands_below_the_axes_and_once_in_a_twin():
+    for name, make in SLIDERS.items():
+        slider = make()
+        entries = {words for _, words in ENTRIES.findall(slider.draw())}
+        assert (name in ("boards", "naming")) == (not entries), name
+        frame = float(re.search(r"<svg [^>]*y=\"30\" [^>]*height=\"([0-9.]+)\"", slider.draw())[1]) + 30
+        assert all(float(y) > frame for y, _ in ENTRIES.findall(slider.draw())), name
+        twin = re.findall(ENTRY, slider.twin().svg)
+        assert len(twin) == len(set(twin)) >= len(entries)

@@ -4,6 +4,8 @@ Beside the story. A lesson shows its slider with ``pk.widgets.rays()``,
 and below it the same picture for a few named settings, which needs no Python behind it: ``pk.widgets.rays().twin()``.
 The drawing behind the lesson's formula is ``pk.widgets.rays().diagram()``.
 
+What a student guesses beforehand is asked for by ``predict``, and drawn into the ``answer``.
+
 In:  a lesson's values: beams, noise, a seed.
 Out: an ``Explorer``; its ``draw(**values)`` returns the picture as SVG text.
 
@@ -19,6 +21,7 @@ from .drawing import what_it_says
 from .edges import edges, show_lines
 from .groups import groups
 from .naming import fit_each_kind, naming
+from .predictions import answer, guesses, predict, read_quiz
 from .rays import rays
 from .scoring import scoring
 from .slider import Choice, Explorer, Slider, explore
@@ -29,3 +32,4 @@ SLIDERS = (boards, rays, cells, groups, edges, arcs, naming, scoring, wheels)
 
 __all__ = ["boards", "rays", "cells", "groups", "edges", "arcs", "naming", "scoring", "wheels", "SLIDERS"]
 __all__ += ["show_lines", "show_circles", "fit_each_kind", "explore", "Explorer", "Slider", "Choice", "what_it_says"]
+__all__ += ["predict", "answer", "guesses", "read_quiz"]

@@ -10,7 +10,6 @@ Slider: arc, noise, seed, show
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cache
 
 import numpy as np
 
@@ -37,7 +36,6 @@ CIRCLE_FITS = (
 ALL_FITS = "all"
 
 
-@cache
 def arcs() -> Explorer:
     """Return the slider of lesson 05: how much of a circle is seen, through which noise, and what five fits say."""
     return explore(
@@ -81,13 +79,12 @@ def show_circles(points: Floats, circles: Mapping[str, Circle | XYR | None], tru
 
 
 def _drawn(points: Floats, fits: Mapping[str, Circle | None], truth: Circle, *, title: str, says: str) -> str:
-    """Draw the true circle, the fits that are there, the points, and a legend with all radii."""
+    """Draw the true circle, the fits that are there, the points, and what is what."""
     x, y = truth.center.tolist()
-    frame = square_frame((x, y + 0.035), ARC_VIEW)
-    outlines, centers, signs = [], [], [(f"true: {_millimetres(truth)}", PALE, "line")]
+    frame = square_frame((x, y), ARC_VIEW)
+    outlines, centers, signs = [], [], [("true", PALE, "line")]
     for name, color, marker, width, dash in CIRCLE_FITS:
-        if name in fits:
-            signs.append((f"{name}: {_millimetres(fits[name])}", color, marker))
+        signs.append((name, color, marker))
         if circle := fits.get(name):
             outlines.append(frame.circle(circle.center, circle.radius, color, width, dash))
             centers.append(frame.points([circle.center], color, marker, 9))
@@ -97,9 +94,9 @@ def _drawn(points: Floats, fits: Mapping[str, Circle | None], truth: Circle, *, 
         *outlines,
         frame.points(points, INK, size=3),
         *centers,
-        frame.legend(signs),
         title=title,
         says=says,
+        legend=signs,
     )
 
 

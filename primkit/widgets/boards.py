@@ -7,7 +7,6 @@ Slider: seed, shapes, noise, show
 from __future__ import annotations
 
 from collections import Counter
-from functools import cache
 
 import numpy as np
 
@@ -23,7 +22,6 @@ from .slider import Choice, Explorer, Slider, explore
 SHOW_POINTS, SHOW_BOTH, SHOW_TRUTH = "the robot's points", "both", "the truth"
 
 
-@cache
 def boards() -> Explorer:
     """Return the slider of lesson 00: the board's seed, how many shapes, the LiDAR's noise, and what is shown."""
     return explore(

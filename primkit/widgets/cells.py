@@ -33,7 +33,6 @@ SIGNS_OF_CELLS = (("true", BLUE, "line"), ("found", VERMILION, "dashed"))
 READ_AT_CENTER, READ_AT_CORNER = "its centre", "its corner"
 
 
-@cache
 def cells() -> Explorer:
     """Return the slider of lesson 02: cell size, poses, their error, and where a cell is read."""
     return explore(
@@ -83,8 +82,8 @@ def draw_cells(cell: int, poses: int, error: float, read: str) -> str:
         "" if found is None else frame.circle(found.center, found.radius, VERMILION, 2, "6 4"),
         frame.points(points, INK, "square", 2.2 + cell / 3) if fine else frame.points(points, INK, size=4),
         *(frame.robot(pose, GREY, 5) for pose in seen.poses),
-        frame.legend([*SIGNS_OF_CELLS, ("occupied", INK if fine else SKY, "square"), ("robot", GREY, "triangle")]),
         title=_title(cell, found),
+        legend=[*SIGNS_OF_CELLS, ("occupied", INK if fine else SKY, "square"), ("robot", GREY, "triangle")],
         says=_says(int(seen.hits.sum()), len(grid), cell, poses, error, found),
     )
 

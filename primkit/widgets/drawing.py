@@ -34,6 +34,11 @@ SVG_FONT = "font-family='DejaVu Sans, Verdana, sans-serif'"
 WIDEST_PICTURE = 860  # px: what fits beside a notebook's margin on most screens; a wider picture is shown smaller
 PIXEL_TIE = 1e-6  # px: lifts 0.25 and its like over the edge, where rounding could go either way
 
+LEGEND_LEFT, LEGEND_ROW = 22, 22  # px
+ENTRY = re.compile(r'<g class="entry" transform="[^"]*">(.*?)</g>')
+
+Entry = tuple[str, str, str]  # of a legend: words, colour, sign
+
 # Outlines of the markers around (0, 0), for a radius of 1; "dot" and "ring" are drawn as circles.
 MARKERS: dict[str, tuple[tuple[float, float], ...]] = {
     "square": ((-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)),
@@ -152,23 +157,6 @@ class Frame:
         ((x, y),) = self.at(where)
         return words_at(x + shift[0], y + shift[1], words, color=color, anchor=anchor, size=size, rim=True)
 
-    def legend(self, entries: Sequence[tuple[str, str, str]], corner: str = "top left") -> str:
-        """Explain signs in a corner: (words, colour, "dot" | "ring" | "cross" | "line" | "dashed" | a marker) each.
-
-        >>> "hits" in board_frame().legend([("hits", BLUE, "dot")])
-        True
-        """
-        wide = 0.62 * LETTER_SIZE * max(len(words) for words, _, _ in entries) + 34
-        tall = 17 * len(entries) + 6
-        left = PAD_LEFT + 5 if "left" in corner else self.width - PAD_RIGHT - 5 - wide
-        top = PAD_TOP + 5 if "top" in corner else self.height - PAD_BOTTOM - 5 - tall
-        place = f'x="{_n(left)}" y="{_n(top)}" width="{_n(wide)}" height="{tall}"'
-        return f'<rect {place} fill="white" fill-opacity="0.85"/>' + "".join(
-            _sign(left + 6, top + 12 + 17 * row, color, sign)
-            + words_at(left + 30, top + 16 + 17 * row, words, color=INK)
-            for row, (words, color, sign) in enumerate(entries)
-        )
-
     def axes(self) -> str:
         """Draw the axes with ticks, numbers, names and units."""
         (left, bottom), (right, top) = self.at([(self.x[0], self.y[0]), (self.x[1], self.y[1])])
@@ -201,30 +189,70 @@ def square_frame(center: tuple[float, float], size: float) -> Frame:
     return Frame((x - half, x + half), (y - half, y + half), width=425, height=425)
 
 
-def picture(frame: Frame, *parts: str, title: str, says: str) -> str:
+def picture(
+    frame: Frame, *parts: str, title: str, says: str, legend: Sequence[Entry] = (), below: str = "", room: int = 0
+) -> str:
     """Return the whole SVG: axes, parts from back to front, the finding as title, and the sentence for all readers.
 
-    Parts that reach beyond the axes are cut off at them.
+    Parts that reach beyond the axes are cut off at them. ``legend`` explains signs below the axes: (words, colour,
+    sign) each, with "dot", "ring", "cross", "line", "dashed" or a marker. Between them there is ``room``, in pixels,
+    for what has axes of its own: ``below``, drawn from y = 0 on.
+
+    >>> svg = picture(board_frame(), title="Hits", says="None.", legend=[("hits", BLUE, "dot")])
+    >>> size_of(svg), "hits" in svg
+    ((425, 447), True)
     """
     (left, bottom), (right, top) = frame.at([(frame.x[0], frame.y[0]), (frame.x[1], frame.y[1])])
     window = f'x="{left:g}" y="{top:g}" width="{_n(right - left)}" height="{_n(bottom - top)}"'
     view = f'viewBox="{left:g} {top:g} {_n(right - left)} {_n(bottom - top)}"'
     inside = f'<svg {window} {view} overflow="hidden">{"".join(parts)}</svg>'
     heading = words_at(left, 19, title, color=INK, size=_fitting(title, frame.width - left - 4), bold=True)
-    return _svg(frame.width, frame.height, title, says, frame.axes() + inside + heading)
+    own = f'<g transform="translate(0 {frame.height - PAD_TOP // 2})">{below}</g>' if below else ""
+    entries = [_sign(0, 0, color, sign) + words_at(24, 4, words, color=INK) for words, color, sign in legend]
+    signs, tall = _in_rows(entries, frame.width, frame.height + room)
+    return as_svg(frame.width, frame.height + room + tall, title, says, frame.axes() + inside + heading + own + signs)
+
+
+def _in_rows(entries: Sequence[str], width: int, top: int) -> tuple[str, int]:
+    """Return a legend's entries in rows of this width, and how tall they are."""
+    x, row, placed = float(LEGEND_LEFT), 1, []
+    for entry in entries:
+        letters = re.search(r">([^<]*)</text>", entry)
+        wide = 24 + 0.6 * LETTER_SIZE * len(unescape(letters[1]) if letters else "")
+        if x > LEGEND_LEFT and x + wide > width:
+            x, row = LEGEND_LEFT, row + 1
+        place = f"{_n(x)} {top + LEGEND_ROW * row - 12}"
+        placed.append(f'<g class="entry" transform="translate({place})">{entry}</g>')
+        x += wide + 14
+    return "".join(placed), LEGEND_ROW * row if placed else 0
 
 
 def side_by_side(pictures: Sequence[str], captions: Sequence[str], *, says: str = "") -> str:
-    """Return pictures of the same size as small multiples in one SVG, two in a row, with a caption above each."""
+    """Return pictures of the same size as small multiples in one SVG, two in a row, with a caption above each.
+
+    What their legends explain stands once, below all.
+    """
     width, height = size_of(pictures[0])
+    found = [re.findall(ENTRY, svg) for svg in pictures]
+    tall = max((_in_rows(entries, width, 0)[1] for entries in found), default=0)
     columns, rows = min(2, len(pictures)), -(-len(pictures) // 2)
-    cells = []
+    step, cells = height - tall + 26, []
     for number, (svg, caption) in enumerate(zip(pictures, captions, strict=True)):
-        x, y = number % columns * width, number // columns * (height + 26)
+        x, y = number % columns * width, number // columns * step
         cells.append(words_at(x + PAD_LEFT, y + 20, f"{'abcdefghijkl'[number]}) {caption}", size=15, bold=True))
-        cells.append(svg.replace("<svg ", f'<svg x="{x}" y="{y + 26}" ', 1))
+        cells.append(re.sub(ENTRY, "", svg).replace("<svg ", f'<svg x="{x}" y="{y + 26}" ', 1))
+    every = list(dict.fromkeys(entry for entries in found for entry in entries))
+    legend, room = _in_rows(every, columns * width, rows * step)
     says = says or " ".join(f"{caption}: {what_it_says(svg)}" for svg, caption in zip(pictures, captions, strict=True))
-    return _svg(columns * width, rows * (height + 26), "; ".join(captions), says, "".join(cells))
+    return as_svg(columns * width, rows * step + room, "; ".join(captions), says, "".join(cells) + legend)
+
+
+def stacked(pictures: Sequence[str]) -> str:
+    """Return pictures of the same width below each other in one SVG."""
+    heights = [size_of(svg)[1] for svg in pictures]
+    placed = (svg.replace("<svg ", f'<svg y="{sum(heights[:k])}" ', 1) for k, svg in enumerate(pictures))
+    says = " ".join(map(what_it_says, pictures))
+    return as_svg(size_of(pictures[0])[0], sum(heights), says, says, "".join(placed))
 
 
 def sentence(width: int, height: int, words: str) -> str:
@@ -237,7 +265,7 @@ def sentence(width: int, height: int, words: str) -> str:
         else:
             line = f"{line} {word}".strip()
     body = "".join(words_at(20, 40 + 20 * n, part, size=14) for n, part in enumerate([*lines, line]))
-    return _svg(width, height, words, words, body)
+    return as_svg(width, height, words, words, body)
 
 
 def what_it_says(svg: str) -> str:
@@ -296,7 +324,7 @@ def round_ticks(low: float, high: float) -> tuple[float, ...]:
     return tuple((np.round(np.arange(first, last + 1) * step, 10) + 0.0).tolist())
 
 
-def _svg(width: int, height: int, title: str, says: str, body: str) -> str:
+def as_svg(width: int, height: int, title: str, says: str, body: str) -> str:
     """Return an SVG with a white ground that shrinks to narrow columns, and what is said to who cannot see it."""
     shown = min(1.0, WIDEST_PICTURE / width)
     size = f'width="{_n(shown * width)}" height="{_n(shown * height)}" viewBox="0 0 {width} {height}"'

@@ -31,10 +31,13 @@ from .slider import Explorer, Picture, Slider, explore
 RECTANGLE = Polygon([(-0.13, -0.09), (0.13, -0.09), (0.13, 0.09), (-0.13, 0.09)]).moved((0.02, 0.01), 0.3)
 MOST_TRIALS_SHOWN = 60
 LINE_SIGNS = ("dot", "cross", "diamond", "triangle", "square", "triangle down", "ring")  # of the lines' points, in turn
+TRIAL_LEGEND = (
+    *(("this trial", VERMILION, "dashed"), ("its two points", VERMILION, "square")),
+    ("best so far", BLUE, "line"),
+)
 LINE_REACH = 1.0  # m: half the length of a line that is drawn across the whole picture
 
 
-@cache
 def edges() -> Explorer:
     """Return the slider of lesson 04: the trials of RANSAC one after the other, and the threshold's band."""
     return explore(
@@ -73,7 +76,7 @@ def draw_edges(trial: int, threshold: float, noise: float, seed: int) -> str:
     counts = np.count_nonzero(near, axis=1)
     best, now = int(np.argmax(counts)), trial - 1
     x, y = RECTANGLE.centroid.tolist()
-    frame = square_frame((x, y + 0.04), 0.42)  # with room for the legend above
+    frame = square_frame((x, y), 0.38)
     return picture(
         frame,
         _band(frame, Line(*lines[now]), reach, ORANGE),
@@ -83,16 +86,10 @@ def draw_edges(trial: int, threshold: float, noise: float, seed: int) -> str:
         _across(frame, Line(*lines[best]), BLUE, 2),
         _across(frame, Line(*lines[now]), VERMILION, 2, "7 4"),
         frame.points(points[samples[now]], VERMILION, "square", 11),
-        frame.legend(
-            [
-                (f"this trial: {counts[now]} inliers", VERMILION, "dashed"),
-                ("its two points", VERMILION, "square"),
-                (f"best so far, trial {best + 1}: {counts[best]} inliers", BLUE, "line"),
-            ]
-        ),
         title=f"After {count(trial, 'trial')}: {counts[best]} of {len(points)} points agree",
         says=f"Trial {trial} draws two points and finds {counts[now]} inliers of {len(points)}; "
         f"the best so far is trial {best + 1} with {counts[best]}.",
+        legend=TRIAL_LEGEND,
     )
 
 

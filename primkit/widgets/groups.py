@@ -44,7 +44,6 @@ GROUP_LEGEND = (
 )
 
 
-@cache
 def groups() -> Explorer:
     """Return the slider of lesson 03: K-Means on three boards, after each of its steps."""
     return explore(
@@ -85,9 +84,9 @@ def draw_groups(board: str, start: str, k: int, seed: int, step: int) -> str:
         *(frame.polyline(way[: step // 2 + 1, j], INK, 1.5) for j in range(k) if step > 1),
         frame.points(way[0], "white", size=11) + frame.points(way[0], INK, "ring", 9),
         frame.points(centers, "white", "square", 14) + frame.points(centers, INK, "square", 10),
-        frame.legend(GROUP_LEGEND),
         title=title,
         says=says,
+        legend=GROUP_LEGEND,
     )
 
 

@@ -10,7 +10,6 @@ Slider: shape, noise, view points, price
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
 from itertools import combinations
 
 import numpy as np
@@ -53,8 +52,11 @@ CLOSED_LEAST_TURN, CLOSED_MOST_TURN, CLOSED_LEAST_SIDE = np.radians(2), np.radia
 ENDS_PER_SIDE = 21  # an outline is drawn in so many steps a side; every other one where it was not seen
 HARDLY_SEEN = 0.4  # a side of which less than this share has points near it was hardly seen
 
-BARS = Frame((-0.2, 0.2), (-0.26, 0.14), width=425, height=425, y_ticks=(-0.1, 0.0, 0.1))
-FIRST_BAR, BAR_ROW, BAR_ENDS = -0.178, 0.021, (-0.105, 0.115)  # m in BARS: the first bar, a row, left and right
+VIEW = Frame((-0.2, 0.2), (-0.14, 0.14), width=425, height=320, y_ticks=(-0.1, 0.0, 0.1))
+BARS = Frame(
+    (-0.2, 0.2), (0.0, 5.0), width=425, height=75 + 105
+)  # below: a row for the words, and one for each candidate
+BAR_ENDS, BARS_ROOM = (-0.105, 0.115), 125  # in BARS, left and right; px
 LONGEST_BAR = 2.5  # times the least cost: longer bars are cut off
 
 
@@ -73,7 +75,6 @@ class Fitted:
         return float(np.sum(self.shape.signed_distance(points) ** 2)) / spread**2
 
 
-@cache
 def naming() -> Explorer:
     """Return the slider of lesson 06: a shape, noise, view points, and what a fitted number costs."""
     return explore(
@@ -110,12 +111,13 @@ def draw_naming(shape: str, noise: float, views: int, price: str) -> str:
     assert chosen is not None  # a circle fits always, or a rectangle
     says = _says(found[best].kind, margin, shape, noise, views, len(points))
     return picture(
-        BARS,
-        BARS.shape(truth, PALE, width=0, fill=0.5),
-        BARS.points(points, INK, size=2.5),
+        VIEW,
+        VIEW.shape(truth, PALE, width=0, fill=0.5),
+        VIEW.points(points, INK, size=2.5),
         *_outline(chosen, points),
-        *(BARS.robot(pose, size=6) for pose in poses),
-        *_bars(found, misfits, prices, best),
+        *(VIEW.robot(pose, size=6) for pose in poses),
+        below="".join(_bars(found, misfits, prices, best)),
+        room=BARS_ROOM,
         title=_title(found[best].kind, margin, truth.kind),
         says=says,
     )
@@ -199,11 +201,11 @@ def _outline(shape: Shape, points: Floats) -> list[str]:
         stretches = np.vstack([np.stack([side[:-1], side[1:]], axis=1) for side in sides])
         middles, shares = shape.vertices + shape.edges / 2, seen_shares(shape, points)
         hidden = [middle for middle, share in zip(middles, shares, strict=True) if share < HARDLY_SEEN]
-        marks = [BARS.text(middle, "?", VERMILION, "middle", (0, 6), 18) for middle in hidden]
+        marks = [VIEW.text(middle, "?", VERMILION, "middle", (0, 6), 18) for middle in hidden]
     seen = is_seen(stretches.mean(axis=1), points)
     dashes = np.flatnonzero(~seen)[::2]
     starts, ends = stretches[:, 0], stretches[:, 1]
-    parts = [BARS.segments(starts[rows], ends[rows], color, 2.5) for rows in (np.flatnonzero(seen), dashes)]
+    parts = [VIEW.segments(starts[rows], ends[rows], color, 2.5) for rows in (np.flatnonzero(seen), dashes)]
     return [*parts, *marks]
 
 
@@ -211,30 +213,26 @@ def _bars(found: tuple[Fitted, ...], misfits: Floats, prices: Floats, best: int)
     """Draw below the shape what each candidate costs: its misfit, and the price of its numbers."""
     (left, right), least = BAR_ENDS, float(np.min(misfits + prices))
     unit = (right - left) / (LONGEST_BAR * max(least, 1.0))
-    floor = BARS.y[0]
-    parts = [BARS.area([(-0.2, floor), (0.2, floor), (0.2, -0.138), (-0.2, -0.138)], "#FFFFFF", 1.0)]
-    parts.append(BARS.segments([(-0.2, -0.138)], [(0.2, -0.138)], PALE))
-    parts += [BARS.text((-0.195, -0.158), "cost [-] =", INK), BARS.points([(-0.108, -0.155)], BLUE, "square", 10)]
-    parts += [BARS.text((-0.098, -0.158), "misfit +", INK), BARS.points([(-0.033, -0.155)], ORANGE, "diamond", 9)]
-    parts += [BARS.text((-0.023, -0.158), "price of its numbers", INK)]
+    parts = [BARS.text((-0.195, 4.4), "cost [-] =", INK), BARS.points([(-0.108, 4.6)], BLUE, "square", 10)]
+    parts += [BARS.text((-0.098, 4.4), "misfit +", INK), BARS.points([(-0.033, 4.6)], ORANGE, "diamond", 9)]
+    parts += [BARS.text((-0.023, 4.4), "price of its numbers", INK)]
     for row, (one, misfit, price) in enumerate(zip(found, misfits.tolist(), prices.tolist(), strict=True)):
-        y = FIRST_BAR - BAR_ROW * row
+        y = 3.5 - row
         name = ("\u25b6 " if row == best else "") + one.kind
-        parts.append(BARS.text((left - 0.004, y - 0.005), name, INK if row == best else GREY, "end"))
+        parts.append(BARS.text((left - 0.004, y - 0.2), name, INK if row == best else GREY, "end"))
         if one.shape is None:
-            parts.append(BARS.text((left + 0.003, y - 0.005), "none that closes", GREY))
+            parts.append(BARS.text((left + 0.003, y - 0.2), "none that closes", GREY))
             continue
         middle = min(left + misfit * unit, right)
         end = min(left + (misfit + price) * unit, right)
         parts += [_bar(left, middle, y, BLUE), _bar(middle, end, y, ORANGE)]
         cut = " \u226b" if misfit + price > LONGEST_BAR * max(least, 1.0) else ""
-        parts.append(BARS.text((end + 0.004, y - 0.005), f"{misfit + price:,.0f}{cut}", INK))
+        parts.append(BARS.text((end + 0.004, y - 0.2), f"{misfit + price:,.0f}{cut}", INK))
     return parts
 
 
 def _bar(start: float, end: float, y: float, color: str) -> str:
-    half = 0.3 * BAR_ROW
-    return BARS.area([(start, y - half), (end, y - half), (end, y + half), (start, y + half)], color, 0.85)
+    return BARS.area([(start, y - 0.3), (end, y - 0.3), (end, y + 0.3), (start, y + 0.3)], color, 0.85)
 
 
 def _title(kind: Kind, margin: float, truth: Kind) -> str:

@@ -6,8 +6,6 @@ Slider: beams, noise, range, x, y, heading
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,7 +26,6 @@ RAYS_BOARD = World(
 )
 
 
-@cache
 def rays() -> Explorer:
     """Return the slider of lesson 01: beams, noise, range and pose of a LiDAR among four shapes."""
     return explore(
@@ -69,8 +66,8 @@ def draw_rays(beams: int, noise: float, reach: float, x: float, y: float, headin
         frame.segments(starts[hits], ends[hits], ORANGE, 0.9),
         frame.points(ends[hits], VERMILION, size=4.5),
         frame.robot(pose),
-        frame.legend([("hit", VERMILION, "dot"), ("its beam", ORANGE, "line"), ("no hit", PALE, "line")]),
         title="Inside a shape it sees nothing" if inside else f"{n} of {beams} beams hit something",
+        legend=[("hit", VERMILION, "dot"), ("its beam", ORANGE, "line"), ("no hit", PALE, "line")],
         says=_says(beams, n, scans.ranges[0][hits], reach, noise, inside),
     )
 

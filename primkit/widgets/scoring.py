@@ -35,23 +35,26 @@ SCORED_MAPS = ("4-01", "4-03", "4-10")  # on the second and third, circles are n
 MOST_TOLERANCE = 20.0  # mm: the largest tolerance
 CURVE_TOLERANCES = np.linspace(0.0, MOST_TOLERANCE, 201)  # mm
 
-# Below the curves there is room for the weights and the legend.
 SCORE_FRAME = Frame(
     (0.0, MOST_TOLERANCE),
-    (-0.46, 1.05),
+    (0.0, 1.05),
     "tolerance [mm]",
     "weighted accuracy [-]",
     width=425,
-    height=465,
+    height=346,
     x_ticks=(0, 5, 10, 15, 20),
     y_ticks=(0.0, 0.2, 0.4, 0.6, 0.8, 1.0),
 )
-WEIGHT_BAR = (-0.055, -0.135)  # top and bottom of the bar of weights
+WEIGHTS_FRAME = Frame((0.0, MOST_TOLERANCE), (0.0, 1.0), width=425, height=75 + 24)  # the bar of weights, below
+WEIGHTS_ROOM = 46  # px
+SCORE_LEGEND = (
+    *(("ROBUST, two-sided", BLUE, "dot"), ("PAPER, two-sided", VERMILION, "square")),
+    ("one-sided (dashed): too small is right", INK, "ring"),
+)
 SCORE_TIE = 1e-9
 LETTER_WIDTH = 6.6  # px: the width of one letter in the bar
 
 
-@cache
 def scoring() -> Explorer:
     """Return the slider of lesson 07: tolerance and weights; PAPER and ROBUST on three maps, with and without noise."""
     start = CENTER_WEIGHT / (1 - SHAPE_WEIGHT)
@@ -93,18 +96,12 @@ def draw_scores(tolerance: float, shape: float, center: float, board: str, noise
         ]
     return picture(
         SCORE_FRAME,
-        SCORE_FRAME.segments([(0, 0), (0, 1)], [(MOST_TOLERANCE, 0), (MOST_TOLERANCE, 1)], PALE),
+        SCORE_FRAME.segments([(0, 1)], [(MOST_TOLERANCE, 1)], PALE),
         SCORE_FRAME.segments([(tolerance, 0)], [(tolerance, 1.05)], GREY, 1.5, "2 3"),
         *parts,
-        _bar_of(weights),
-        SCORE_FRAME.legend(
-            [
-                ("ROBUST, two-sided", BLUE, "dot"),
-                ("PAPER, two-sided", VERMILION, "square"),
-                ("one-sided (dashed): too small is right", INK, "ring"),
-            ],
-            corner="bottom left",
-        ),
+        below=_bar_of(weights),
+        room=WEIGHTS_ROOM,
+        legend=SCORE_LEGEND,
         title=f"Within {tolerance:g} mm: ROBUST {_two(fair['ROBUST'])}, PAPER {_two(fair['PAPER'])}",
         says=f"Map {board}, noise {noise} mm, right within {tolerance:g} mm: ROBUST scores {_two(fair['ROBUST'])}, "
         f"PAPER {_two(fair['PAPER'])}; if what is too small is right, {_two(lax['ROBUST'])} and {_two(lax['PAPER'])}. "
@@ -145,16 +142,18 @@ def _two(score: float) -> str:
 
 def _bar_of(weights: Weights) -> str:
     """Draw the weights as parts of one bar, each with its name where there is room for it."""
-    top, bottom = WEIGHT_BAR
+    top, bottom = WEIGHTS_FRAME.y[::-1]
     ends = MOST_TOLERANCE * np.cumsum([0.0, *weights])
-    parts = []
+    parts = [WEIGHTS_FRAME.text((0, 1), "weights [-]", INK, shift=(0, -8))]
     looks = zip(("shape", "centre", "dimensions"), weights, (GREY, SKY, PALE), strict=True)
     for left, right, (name, weight, color) in zip(ends[:-1], ends[1:], looks, strict=True):
-        room = (right - left) * SCORE_FRAME.scale[0]
+        room = (right - left) * WEIGHTS_FRAME.scale[0]
         words = next((w for w in (f"{name} {weight:.2f}", f"{weight:.2f}") if LETTER_WIDTH * len(w) < room), "")
         corners = [(left, top), (right, top), (right, bottom), (left, bottom)]
-        parts.append(SCORE_FRAME.area(corners, color, 0.45) if weight else "")
-        parts.append(SCORE_FRAME.text(((left + right) / 2, bottom), words, INK, "middle", (0, -7), 11) if words else "")
+        parts.append(WEIGHTS_FRAME.area(corners, color, 0.45) if weight else "")
+        parts.append(
+            WEIGHTS_FRAME.text(((left + right) / 2, bottom), words, INK, "middle", (0, -7), 11) if words else ""
+        )
     return "".join(parts)
 
 

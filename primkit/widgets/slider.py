@@ -135,10 +135,11 @@ class Picture:
 
 
 class Twin(Picture):
-    """A picture that a click unfolds, since it stands below the slider that shows more; on paper it is open."""
+    """A picture that a click unfolds, below the slider that shows more; where nothing can be moved, it is open."""
 
     def _repr_html_(self) -> str:
-        opened = "<style>@media print{.primkit-twin::details-content{content-visibility:visible;height:auto}}</style>"
+        unfolded = ".primkit-twin::details-content{content-visibility:visible;height:auto}"
+        opened = f"<style>@media print{{{unfolded}}}body.jp-Notebook {unfolded}</style>"  # on paper, and in an export
         head = "<summary>The same picture with each named setting, side by side</summary>"
         return f'{opened}<details class="primkit-twin">{head}{super()._repr_html_()}</details>'
 
@@ -188,6 +189,8 @@ class Explorer:
         """The widget: controls, buttons, picture, and what the picture says."""
         import ipywidgets
 
+        from .panel import attended
+
         svg = self.draw()  # at the start an error is not caught: a lesson that cannot begin should say so
         width, _ = size_of(svg)
         # Of one size, whatever is drawn: the page below must not jump.
@@ -202,7 +205,7 @@ class Explorer:
         row = ipywidgets.HBox(buttons, layout=_wide(CONTROLS_WIDTH) | {"flex_flow": "row wrap"})
         controls = ipywidgets.VBox([*self._knobs.values(), row])
         beside = ipywidgets.Box([controls, self._image], layout={"flex_flow": "row wrap"})  # below, where room is short
-        return ipywidgets.VBox([beside, self._readout])
+        return attended([beside, self._readout], sum(isinstance(control, Slider) for control in self.controls))
 
     def _line_up(self) -> None:
         """Give all names the width of the longest, as one that does not fit would be cut off."""
@@ -256,6 +259,14 @@ class Explorer:
                     f"setting {name!r} must have values that its controls hold, got {key} = {short(value)}"
                 )
         return complete
+
+    def _ipython_display_(self) -> None:
+        """Show the panel and the twin, which is for who reads the notebook without running it."""
+        from IPython.display import display
+
+        display(self._repr_mimebundle_(), raw=True)  # type: ignore[no-untyped-call]  # IPython has no types
+        if self.settings:
+            display(self.twin())  # type: ignore[no-untyped-call]
 
     def _repr_mimebundle_(self, **_kinds: Any) -> dict[str, Any]:
         """Show the panel; stored as text it is one line that does not change from run to run."""

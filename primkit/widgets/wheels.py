@@ -9,8 +9,6 @@ Slider: left, right, seconds, pieces
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 
 from ..arguments import Floats
@@ -26,7 +24,6 @@ ARC_PLACES = 100  # places that an arc is drawn through
 STRAIGHT_RADIUS = 10.0  # m: a larger circle is straight as far as one sees
 
 
-@cache
 def wheels() -> Explorer:
     """Return the slider of lesson 08: two speeds, a time, and how many straight pieces stand for the arc."""
     return explore(
@@ -62,13 +59,7 @@ def draw_wheels(left: float, right: float, seconds: float, pieces: int) -> str:
         frame.points(straight[:, :2], VERMILION, "square", 5),
         frame.robot(START_POSE, GREY),
         frame.robot(arc[-1], INK),
-        frame.legend(
-            [
-                ("arc", BLUE, "line"),
-                (f"{count(pieces, 'straight piece')}: {off:.0f} mm off", VERMILION, "square"),
-                *([("turning centre", ORANGE, "cross")] if abs(radius) <= BOARD_SIDE / 2 else []),
-            ]
-        ),
+        legend=[("arc", BLUE, "line"), ("straight pieces", VERMILION, "square"), ("turning centre", ORANGE, "cross")],
         title=_title(left, right, turn),
         says=f"{_how(left, right)} for {seconds:g} s: {_where(left, right, radius, turn, seconds)}; "
         f"{count(pieces, 'straight piece')} end{'s' * (pieces == 1)} {off:.0f} mm off.",

@@ -1,7 +1,5 @@
 """A lesson in which much is broken: each cell breaks one promise, and the rules must say so."""
 
-import json
-
 CELLS = [
     """
 from itertools import count
@@ -35,10 +33,11 @@ explorer(lambda k: ring(k + 0.001 * next(calls)))  # never the same picture twic
 """,
     """
 square = '<svg height="{0}00" width="10"></svg>'.format  # of another height for each k, in a plain ipywidget
-slider, drawn = ipywidgets.IntSlider(1, 1, 4, description="a name too long for its place"), ipywidgets.HTML(square(1))
+slider = ipywidgets.FloatSlider(0.1 + 0.2, min=0.1, max=0.4, step=0.1, description="a name too long for its place")
+drawn = ipywidgets.HTML(square(1))
 
 def redraw(change):
-    drawn.value = square(change.new)
+    drawn.value = square(round(10 * change.new))
     raise RuntimeError("seen by the kernel alone")
 
 slider.observe(redraw, names="value")
@@ -64,6 +63,10 @@ BREACHES = {
         JUMPS,
     ],
     "mouse moves the picture": [FAILS, r"slider 2: k: the mouse changes nothing in the picture", JUMPS],
+    "sliders tell": [
+        r"slider 4: a name too long for its place: its handle is called None",
+        r"slider 4: a name too long for its place: its value is told as 0\.30000000000000004",
+    ],
     "settings differ": [
         r"slider 2: two settings show the same picture",
         *(rf"slider 3: {name}: Enter shows another picture than the mouse" for name in "ab"),
@@ -72,11 +75,3 @@ BREACHES = {
     "fits a laptop": [r"cell 5: 1\d\d px wide, 80 px are there", r"cell 6: 20\d\d px wide, \d+ px are there"],
     "fits a phone": [r"cell 5: 3\d\d px wide, \d+ px are there", r"cell 6: 2000 px wide, \d+ px are there"],
 }
-
-
-def notebook():
-    """Return the lesson as the text of a notebook."""
-    blank = {"cell_type": "code", "metadata": {}, "outputs": [], "execution_count": None}
-    cells = [blank | {"id": f"cell-{number}", "source": source.strip()} for number, source in enumerate(CELLS)]
-    python = {"kernelspec": {"name": "python3", "display_name": "Python 3"}}
-    return json.dumps({"nbformat": 4, "nbformat_minor": 5, "metadata": python, "cells": cells})

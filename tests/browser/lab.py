@@ -219,6 +219,14 @@ class Lesson:
         self._handle.evaluate(CLOSE)
 
 
+def blank_notebook(sources) -> str:
+    """Return a notebook of these code cells, not yet run, as text."""
+    blank = {"cell_type": "code", "metadata": {}, "outputs": [], "execution_count": None}
+    cells = [blank | {"id": f"cell-{number}", "source": source.strip()} for number, source in enumerate(sources)]
+    python = {"kernelspec": {"name": "python3", "display_name": "Python 3"}}
+    return json.dumps({"nbformat": 4, "nbformat_minor": 5, "metadata": python, "cells": cells})
+
+
 @contextmanager
 def opened(page, name: str, slider_cells: int):
     """Open a lesson, run it, and close it in the end."""

@@ -5,7 +5,7 @@ from contextlib import suppress
 from pathlib import Path
 
 WATCH = (Path(__file__).parent / "watch.js").read_text(encoding="utf-8")
-OUTERMOST = ":not(.jupyter-widgets) > .jupyter-widgets:has(.noUi-handle)"
+OUTERMOST = ":not(.jupyter-widgets) > .jupyter-widgets:not(.primkit-predict):has(.noUi-handle)"
 
 Move = Callable[[], object]
 
@@ -39,6 +39,14 @@ class Slider(Control):
     def press(self, key: str) -> None:
         """Press a key with the focus on its handle."""
         self.place.locator(".noUi-handle").press(key)
+
+    def told(self) -> tuple[str, str]:
+        """Return the name and the value that a screen reader has of it."""
+        words = ["aria-label", "aria-valuetext"]
+        told: list[str] = self.place.locator(".noUi-handle").evaluate(
+            "(h, words) => words.map((w) => h.getAttribute(w))", words
+        )
+        return told[0], told[1]
 
     def step(self) -> None:
         """Press the arrow key onwards; turn round at an end."""

@@ -5,13 +5,13 @@ import re
 import pytest
 
 from . import broken
-from .lab import opened
+from .lab import blank_notebook, opened
 from .test_lessons import RULES
 
 
 @pytest.fixture(scope="module")
 def lesson(lab, folder):
-    (folder / "notebooks" / "broken.ipynb").write_text(broken.notebook())
+    (folder / "notebooks" / "broken.ipynb").write_text(blank_notebook(broken.CELLS))
     with opened(lab, "broken", slider_cells=4) as lesson:
         lesson.slider_cells += 1  # as if one were not shown, without the wait for it
         yield lesson

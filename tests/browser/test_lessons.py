@@ -13,15 +13,16 @@ import pytest
 
 from tests.helpers import WAITS
 
-from .lab import LESSONS, ROOT, opened
+from .lab import LESSONS, PATIENCE, ROOT, TOKEN, blank_notebook, opened
+from .panel import panels
 
 WIDE, NARROW = 1280, 390  # px: a laptop, and a phone
-PRESSES = 24  # measured key presses for each lesson
+PRESSES = 12  # measured key presses for each lesson
 UNBEARABLE = 1000  # ms: far above what is measured, as the machine may be busy
 
 ARROWS = ("ArrowRight", "ArrowRight", "ArrowLeft", "End", "Home")
 PANEL = ".jupyter-widgets, .widget-label"  # a name that is too long is cut off
-SLIDER_CELL = re.compile(r"pk\.widgets\.\w+\(\)")
+SLIDER_CELL = re.compile(r"pk\.widgets\.(?!guesses)\w+\(\)")
 ERRORS = '[data-mime-type="application/vnd.jupyter.error"], [data-mime-type="application/vnd.jupyter.stderr"]'
 
 
@@ -117,8 +118,19 @@ def too_wide(page, selector):
     return page.locator(".jp-Cell").evaluate_all(TOO_WIDE, selector)
 
 
+def told_to_who_cannot_see(panel):
+    """Each slider has the name that stands beside it, and tells the value that stands there."""
+    for slider in panel.sliders:
+        name, value = slider.told()
+        if name != slider.name:
+            yield f"{slider.name}: its handle is called {name}"
+        if value != slider.place.locator(".widget-readout").inner_text():
+            yield f"{slider.name}: its value is told as {value}"
+
+
 RULES = {
     "cells run": cells_run,
+    "sliders tell": of_each_panel(told_to_who_cannot_see),
     "keys move the picture": of_each_panel(keys_move),
     "mouse moves the picture": of_each_panel(mouse_moves),
     "settings differ": of_each_panel(settings_differ),
@@ -155,6 +167,35 @@ def lesson(request, lab, screenshots):
 @pytest.mark.parametrize("rule", RULES)
 def test_a_lesson_keeps_the_rule(lesson, rule):
     assert list(RULES[rule](lesson)) == []
+
+
+def test_arrow_keys_move_a_slider_in_notebook_7_and_silence_is_told(browser, address, folder):
+    """Its own arrow keys would go to the next cell; and after a restart the picture would stay, without a word."""
+    (folder / "notebooks" / "slider.ipynb").write_text(
+        blank_notebook(["import primkit as pk\npk.widgets.edges()", "1"])
+    )
+    context = browser.new_context(base_url=address, viewport={"width": WIDE, "height": 1000})
+    context.set_default_timeout(1000 * PATIENCE)
+    page = context.new_page()
+    page.goto(f"/notebooks/slider.ipynb?token={TOKEN}")
+    page.locator(".jp-Notebook .jp-CodeCell .cm-content").first.click()
+    page.wait_for_function("document.querySelector('[data-status=idle]')")
+    page.keyboard.press("Shift+Enter")
+    (panel,) = panels(page, 1, settle=lambda: None)
+    slider, before = panel.sliders[0], panel.picture()
+    slider.place.locator(".noUi-handle").focus()
+    page.keyboard.press("ArrowRight")
+    panel.await_another(before)
+    page.keyboard.press("ArrowRight")
+    assert slider.place.locator(".noUi-handle").evaluate("(handle) => handle === document.activeElement")
+    assert slider.told() == ("trial", "12")
+    silent = page.get_by_text("Python does not answer")
+    assert silent.count() == 0
+    restart = "() => window.jupyterapp.shell.currentWidget.sessionContext.session.kernel.restart()"
+    page.evaluate(restart)
+    page.keyboard.press("ArrowRight")
+    silent.wait_for()
+    context.close()
 
 
 def test_a_key_press_is_soon_a_picture(lesson, record_property):

@@ -1,13 +1,13 @@
 """The live scene in a real browser: keys and buttons drive the robot, the picture follows, and no cell is harmed."""
 
-import json
+import re
 
 import numpy as np
 import pytest
 
 from tests.helpers import WAITS
 
-from .lab import RUN, TOKEN, enter, opened
+from .lab import RUN, TOKEN, blank_notebook, enter, opened
 
 NAME = "scene"
 CELLS = [
@@ -24,7 +24,7 @@ FILM = [
     "pk.replay(drive, world)",
 ]
 POLL = 50  # ms: the page is looked at so often; by default at every frame, which costs as much as the scene
-PRESSES = 20  # measured key presses
+PRESSES = 12  # measured key presses
 LONGEST = 60  # looks at a robot that shall come to rest
 UNBEARABLE = 1000  # ms: far above what is measured, as the machine may be busy
 WIDE, NARROW = 1280, 390  # px
@@ -62,19 +62,21 @@ CONTRAST = r"""(part) => {
 
 def notebook(sources=CELLS):
     """Return a notebook as text: with a scene, and a cell after it."""
-    blank = {"cell_type": "code", "metadata": {}, "outputs": [], "execution_count": None}
-    cells = [blank | {"id": f"cell-{number}", "source": source} for number, source in enumerate(sources)]
-    python = {"kernelspec": {"name": "python3", "display_name": "Python 3"}}
-    return json.dumps({"nbformat": 4, "nbformat_minor": 5, "metadata": python, "cells": cells})
+    return blank_notebook(sources)
 
 
 class Seat:
     """Where one drives: the scene in a page."""
 
-    def __init__(self, page) -> None:
-        self.page, self.root = page, page.locator(".primkit-scene")
+    def __init__(self, page, number=0) -> None:
+        self.page, self.root = page, page.locator(".primkit-scene").nth(number)
         self.root.locator("canvas").wait_for()
-        page.wait_for_function("document.querySelector('.primkit-scene').dataset.pose")
+        self.until("root.dataset.pose")
+
+    def until(self, what, n=None):
+        """Wait until something is so of the scene's root."""
+        handle = self.root.element_handle()
+        self.page.wait_for_function(f"([root, n]) => {what}", arg=[handle, n], polling=POLL)
 
     @property
     def scans(self):
@@ -96,9 +98,7 @@ class Seat:
 
     def after(self, scans):
         """Wait until the page shows that many scans or more."""
-        self.page.wait_for_function(
-            "(n) => +document.querySelector('.primkit-scene').dataset.scans >= n", arg=scans, polling=POLL
-        )
+        self.until("+root.dataset.scans >= n", scans)
 
     def hold(self, keys, scans):
         """Hold keys until that many more scans are seen."""
@@ -114,7 +114,7 @@ class Seat:
         """Wait until nothing moves for three steps; return how many scans there are then."""
         quiet, before = 0, self.scans
         for _ in range(LONGEST):
-            self.page.wait_for_timeout(150)
+            self.page.wait_for_timeout(120)
             quiet, before = (quiet + 1, before) if self.scans == before else (0, self.scans)
             if quiet == 3:
                 return before
@@ -122,7 +122,7 @@ class Seat:
 
     def rests(self):
         """Wait until no more shapes are looked for."""
-        self.page.wait_for_function("document.querySelector('.primkit-scene').dataset.busy === 'false'", polling=POLL)
+        self.until("root.dataset.busy === 'false'")
 
 
 @pytest.fixture(scope="module")
@@ -251,9 +251,8 @@ def harm(page, keys):
     return texts_in(page) != texts
 
 
-@pytest.mark.parametrize("keys", ["dd", "aabb", "xx", "zz", "mm11", "ii00"])
-def test_no_key_harms_a_cell(seat, keys):
-    assert not harm(seat.page, keys)
+def test_no_key_harms_a_cell(seat):
+    assert not harm(seat.page, "ddaabbxxzzmm11ii00")
     seat.page.keyboard.press("Shift+Enter")
     seat.stands()
     assert cells_in(seat.page) == len(CELLS)
@@ -279,15 +278,15 @@ def another_lab(browser, address):
     context.close()
 
 
-@pytest.mark.parametrize("keys", ["dd", "aabb", "xx"])
-def test_without_its_guards_the_same_keys_harm_a_cell(another_lab, folder, keys):
+def test_without_its_guards_the_same_keys_harm_a_cell(another_lab, folder):
     """The trap is there, and the test above sees it."""
-    (folder / "notebooks" / f"unguarded-{keys}.ipynb").write_text(notebook())
-    with opened(another_lab, f"unguarded-{keys}", 0):
-        seat = Seat(another_lab)
-        seat.root.locator("canvas").click()
-        seat.root.evaluate(UNGUARD)
-        assert harm(another_lab, keys)
+    (folder / "notebooks" / "unguarded.ipynb").write_text(notebook(3 * CELLS))
+    with opened(another_lab, "unguarded", 0):
+        for number, keys in ((2, "xx"), (1, "aabb"), (0, "dd")):  # from the last on: the first is the last to go
+            seat = Seat(another_lab, number)
+            seat.root.locator("canvas").click()
+            seat.root.evaluate(UNGUARD)
+            assert harm(another_lab, keys), keys
 
 
 def test_a_cell_that_is_run_gives_its_scene_the_focus(another_lab, folder):
@@ -358,10 +357,10 @@ def test_in_notebook_7_keys_drive_and_harm_no_cell(browser, address, folder):
 
 
 def test_scenes_that_nobody_sees_any_more_are_given_back(another_lab, folder):
-    """After fifteen runs of its cell there is one scene, and no thread that waits."""
+    """After six runs of its cell there is one scene, and no thread that waits."""
     (folder / "notebooks" / "again.ipynb").write_text(notebook([CELLS[0], COUNT]))
     with opened(another_lab, "again", 0) as lesson:
-        for _ in range(14):
+        for _ in range(5):
             another_lab.evaluate(RUN)
         lesson.settle()
         assert another_lab.locator(".jp-OutputArea-output").last.inner_text().startswith("1 made, ")
@@ -536,45 +535,64 @@ def test_a_thing_is_moved_while_noise_keeps_the_kernel_busy(context, folder, scr
 
 # One's own code is the robot's eyes.
 
+MEASURE = "    one = pk.measure_shape(points, 0.0004)\n    return one and (one.shape, one.margin)"
 OWN = {
     "a right fit_circle": ("def mine(points):\n    return pk.fit_circle(points)", "fit_circle"),
     "a wrong fit_circle": ("def mine(points):\n    return (*points.mean(axis=0), 0.12)", "fit_circle"),
     "a right segment": ("def mine(points, n):\n    return pk.link(points)", "segment"),
+    "a wrong segment": ("def mine(points, n):\n    return (points[:, 0] > 0.2).astype(int)", "segment"),
     "a right fit_line": ("def mine(points):\n    return pk.fit_line(points)", "fit_line"),
     "a wrong fit_line": (
         "def mine(points):\n    line = pk.fit_line(points)\n    return line.angle + 0.3, line.offset",
         "fit_line",
     ),
-    "a wrong segment": ("def mine(points, n):\n    return (points[:, 0] > 0.2).astype(int)", "segment"),
-    "a slow fit_line": (
+    "a right measure": (f"def mine(points):\n{MEASURE}", "measure"),
+    "a wrong measure": ("def mine(points):\n    return pk.Circle(points.mean(axis=0), 0.4), 99", "measure"),
+    "a right score": (
+        "def mine(found, world):\n    return pk.evaluate(found, world).weighted_accuracy",
+        "score",
+    ),
+    "a wrong score": ("def mine(found, world):\n    return min(1.0, len(found) / 2)", "score"),
+    "a fit_circle that raises": ("def mine(points):\n    return points / None", "fit_circle"),
+    "a slow fit_line": (  # the last one, as it goes on in its thread for a while
         "import time\ndef mine(points):\n    until = time.monotonic() + 1\n    while time.monotonic() < until:\n"
         "        sum(range(1000))\n    return pk.fit_line(points)",
         "fit_line",
     ),
-    "a fit_circle that raises": ("def mine(points):\n    return points / None", "fit_circle"),
 }
 OWN_WORLD = "pk.World([pk.Circle((0.2, 0.12), 0.06), pk.Polygon([(0.1, -0.2), (0.3, -0.2), (0.3, -0.1), (0.1, -0.1)])])"
 TROUBLES = {
     "a wrong fit_circle": "fit_circle returns a circle that lies on none of its points; the drive goes on.",
+    "a wrong measure": "measure returns a circle that lies on none of its points; the drive goes on.",
     "a slow fit_line": "fit_line takes ",
     "a fit_circle that raises": "fit_circle raises TypeError",
 }
+OWN_PRESSES = 7  # measured, of each
+
+
+@pytest.fixture(scope="module")
+def own_scenes(context, folder):
+    """A page with a scene for each of them."""
+    cells = [
+        f"import primkit as pk\n{source}\npk.drive_scene({OWN_WORLD}, steps=pk.Steps({step}=mine))"
+        for source, step in OWN.values()
+    ]
+    page = in_voila(context, folder, "own", cells)
+    yield page
+    page.close()
 
 
 @pytest.mark.parametrize("name", OWN)
-def test_one_s_own_step_works_while_one_drives(name, context, folder, screenshots, record_property):
+def test_one_s_own_step_works_while_one_drives(name, own_scenes, screenshots, record_property):
     """Right or wrong, slow or broken: the robot follows the keys, and what is the matter is told."""
-    source, step = OWN[name]
-    show = f"import primkit as pk\n{source}\npk.drive_scene({OWN_WORLD}, steps=pk.Steps({step}=mine))"
-    page = in_voila(context, folder, name.replace(" ", "-"), [show])
-    seat = Seat(page)
+    page, seat = own_scenes, Seat(own_scenes, list(OWN).index(name))
     seat.root.locator("canvas").click()
     watch = seat.root.evaluate_handle(WATCH)
-    for press in range(PRESSES):
+    for press in range(OWN_PRESSES):
         page.keyboard.down("wd"[press % 3 // 2])
-        seat.after(seat.scans + 2)
+        seat.after(seat.scans + 5)
         page.keyboard.up("wd"[press % 3 // 2])
-        seat.stands()
+        page.wait_for_timeout(250)  # ms: the robot stands by then
     waits = watch.evaluate("(watch) => watch.waits")
     record_property(WAITS, (name, waits))
     assert np.median(waits) < UNBEARABLE
@@ -583,9 +601,14 @@ def test_one_s_own_step_works_while_one_drives(name, context, folder, screenshot
         trouble.filter(has_text=TROUBLES[name]).wait_for()
     elif "right" in name:
         assert trouble.inner_text() == ""
+    if "score" in name:
+        seat.rests()
+        theirs, yours = re.search(r"score (\S+), yours (\S+)", seat.score).groups()
+        assert (theirs == yours) == ("right" in name)
+    if name == "a wrong measure":
+        assert "circle, radius 400 mm" in seat.root.locator("canvas").get_attribute("aria-label")
     if screenshots:
         seat.root.screenshot(path=screenshots / f"{name.replace(' ', '_')}.png")
-    page.close()
 
 
 def test_nothing_is_moved_where_things_stand_still(seat):
