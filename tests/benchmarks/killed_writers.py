@@ -115,6 +115,8 @@ def cut_off(name, data, read, folder, step=1):
             if not str(error).startswith(name):
                 wrong.append(f"{name}, {length} bytes: {error}")
             continue
+        if name == "a.csv":  # one scan: its beams
+            now, before = now[0], before[0] if isinstance(before[0], list) else before
         if name.endswith(".ipynb"):  # its reader says what is wrong
             fine = now is not None or data[length:].isspace()
         elif name in ("a.geojson", "a.npz", "a.json", "graded.json"):
