@@ -135,7 +135,8 @@ def _sweep(message: Any, times: list[float], poses: list[Any], mountings: dict[s
         raise ValueError(
             f"a laser must lie level or upside down, got one that is tilted to a cosine of {laser[2, 2]:g}"
         )
-    ranges = np.asarray(message.ranges, dtype=float)
+    with np.errstate(invalid="ignore"):  # some drivers write what is no number at all
+        ranges = np.asarray(message.ranges, dtype=float)
     if not len(ranges):
         raise ValueError("a LaserScan must have ranges, got none")
     angles = message.angle_min + message.angle_increment * np.arange(len(ranges))

@@ -60,6 +60,12 @@ PARTS = (
         b"PK\x05\x06",
     ),
 )
+SDF = (
+    "<?xml version='1.0'?><sdf version='1.8'><world name='w'><model name='m'><pose>1 0 0 0 0 0.5</pose><link name='l'>"
+    "<collision name='a'><geometry><box><size>2 1 0.5</size></box></geometry></collision><collision name='b'><pose>"
+    "0 2 0 0 0 0</pose><geometry><cylinder><radius>0.3</radius><length>1</length></cylinder></geometry></collision>"
+    "</link></model><include><uri>model://sun</uri></include></world></sdf>"
+)
 VALUES = (None, True, False, 0, -1, 1e308, 10**400, "", "x", [], {}, [[]], [None], {"type": "Point"}, "\ud800", 5, 0.5)
 
 
@@ -76,6 +82,8 @@ def seeds(folder):
     formats.save_drive(formats.Drive(seen, [(0, 0), (1, 1)], pk.Lidar(beams=12)), folder / "a.jsonl")
     formats.save_route(route, folder / "a.json")
     board = pk.World([pk.Circle((0, 0), 0.06)])
+    formats.save_world(world, folder / "a.wbt")
+    (folder / "a.sdf").write_text(SDF)
     run_study({"one": board}, {"ROBUST": pk.ROBUST}, folder=folder, jobs=1, progress=False)
     (folder / STUDENTS).write_text("id,first_name,last_name,email\nada,Ada,L,ada@x.org\nbob,Bob,,\n")
     cell = {"cell_type": "code", "source": "1", "outputs": [], "metadata": {"nbgrader": {"grade_id": "a"}}}
@@ -104,6 +112,7 @@ def seeds(folder):
         "a.ipynb": _not_a_notebook,
         "graded.json": _entries_in,
     }
+    readers |= {"a.wbt": formats.load_world, "a.sdf": formats.load_world}
     readers |= dict.fromkeys(formats_of_robots, formats.load_scans)
     return {name: ((folder / name).read_bytes(), read) for name, read in readers.items()}
 
