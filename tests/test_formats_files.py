@@ -37,11 +37,14 @@ SCAN_ENDING = "the name of a file of scans must end in .npz, got "
 def test_other_endings_are_refused_on_both_ways(tmp_path, monkeypatch, name, for_a_map, for_scans):
     monkeypatch.chdir(tmp_path)
     if for_a_map:
-        assert refusal(save_world, World(), name) == for_a_map
-        assert refusal(load_world, name) == for_a_map
+        endings = (".geojson or .json or .wbt", ".geojson or .json or .wbt or .sdf or .world")
+        for_saving, for_loading = (for_a_map.replace(".geojson or .json", one) for one in endings)
+        assert refusal(save_world, World(), name) == for_saving
+        assert refusal(load_world, name) == for_loading
     if for_scans:
         assert refusal(save_scans, a_scan(), name) == for_scans
-        assert refusal(load_scans, name) == for_scans
+        endings = " or ".join(formats.scans.READ_ENDINGS)
+        assert refusal(load_scans, name) == for_scans.replace("in .npz,", f"in {endings},")
     assert list(tmp_path.iterdir()) == []
 
 

@@ -4,7 +4,7 @@ Beside the story: every noun can be put on the shelf between two steps, and what
 
 In:  a ``World``, what was found (``Found``), ``Scans`` or a ``Drive``; a file's name.
 Out: GeoJSON (``.geojson``, ``.json``) for worlds and what was found, compressed NumPy arrays (``.npz``) for scans, JSON
-     Lines (``.jsonl``) for drives, JSON (``.json``) for the ways they went.
+     Lines (``.jsonl``) for drives, JSON (``.json``) for the ways they went. Recordings of robots are read, too.
 
 >>> import tempfile
 >>> from primkit.world import random_world

@@ -128,17 +128,23 @@ def opened(path: Path, mode: str) -> Any:
 
 def bounded_read(path: Path, most: int = TEXT_LIMIT) -> bytes:
     """Return a file's bytes, or refuse one that has more than so many; its size is looked at first."""
+    size = size_of(path)
+    with _plainly(path, "read", "there is no such file in"), naming(path.name):
+        limit(size, most, "must be at most {} bytes")
+        with path.open("rb") as file:
+            data = file.read(size + 1)
+            if len(data) > size:  # one that grows, or that has no size
+                data += file.read(most - size)
+        limit(len(data), most, "must be at most {} bytes")
+        return data
+
+
+def size_of(path: Path) -> int:
+    """Return the size of an ordinary file in bytes, or say in one sentence why there is none."""
     with _plainly(path, "read", "there is no such file in"):
         size = path.stat().st_size
         _check_ordinary(path)
-        with naming(path.name):
-            limit(size, most, "must be at most {} bytes")
-            with path.open("rb") as file:
-                data = file.read(size + 1)
-                if len(data) > size:  # one that grows, or that has no size
-                    data += file.read(most - size)
-            limit(len(data), most, "must be at most {} bytes")
-            return data
+        return size
 
 
 def lines_of(data: bytes) -> Iterator[bytes]:
@@ -168,8 +174,8 @@ def unpacked(archive: zipfile.ZipFile, member: str, most: int) -> bytes:
     return data
 
 
-def as_path(path: Any, endings: Sequence[str], what: str) -> Path:
-    """Return the path, or refuse an ending that says it is something else.
+def as_path(path: Any, endings: Sequence[str], what: str, *, folder: bool = False) -> Path:
+    """Return the path, or refuse an ending that says it is something else; that of a ``folder`` may be any.
 
     >>> as_path("map.txt", (".geojson", ".json"), "a map")
     Traceback (most recent call last):
@@ -181,7 +187,8 @@ def as_path(path: Any, endings: Sequence[str], what: str) -> Path:
     if WINDOWS and _has_stray_colon(name):
         raise ValueError(f"{name}: the name of {what} must have no colon, but for a drive as in C:\\maps")
     path = Path(path)
-    if path.suffix.lower() not in endings:
+    ending = "".join(path.suffixes[-2:] if path.suffix.lower() == ".gz" else path.suffixes[-1:])
+    if ending.lower() not in endings and not (folder and path.name and path.is_dir()):
         rule, got = " or ".join(endings), path.suffix or "no ending"
         raise ValueError(f"{path.name or path}: the name of {what} must end in {rule}, got {got}")
     return path

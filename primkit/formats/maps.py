@@ -25,24 +25,26 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import check_type, limit, short
+from ..arguments import as_positive, check_type, limit, short
 from ..shapes import SAME_CORNER, Circle, Polygon, Shape
 from ..world import World
 from .files import TEXT_LIMIT, StrPath, as_path, bounded_read, naming, write_atomically
+from .sdf import read_sdf
+from .webots import read_webots, write_webots
 
 MAP_ENDINGS = (".geojson", ".json")
 MAP_LIMIT = TEXT_LIMIT  # a shape takes about 300 bytes: room for 50,000 of them
 
 
 def save_world(world: World, path: StrPath, *, properties: Sequence[Mapping[str, Any]] | None = None) -> None:
-    """Write a world, or what was found, as GeoJSON.
+    """Write a world, or what was found, as GeoJSON; or a world for the simulator Webots.
 
     Parameters
     ----------
     world : World
         A map; or the found shapes as ``World(shapes, size)``.
     path : str or path
-        The file, ending in ``.geojson`` or ``.json``; one that is there already is replaced.
+        The file, ending in ``.geojson`` or ``.json``, or in ``.wbt``; one that is there already is replaced.
     properties : sequence of dict, optional
         What else is known of each shape, in the order of ``world.shapes``: numbers (metres, radians), texts,
         true, false, None, and lists or dicts of these. NumPy numbers and arrays will do.
@@ -73,13 +75,16 @@ def save_world(world: World, path: StrPath, *, properties: Sequence[Mapping[str,
     }
     <BLANKLINE>
     """
-    path = as_path(path, MAP_ENDINGS, "a map")
+    path = as_path(path, (*MAP_ENDINGS, ".wbt"), "a map")
     with naming(path.name):
         check_type(world, World, "a map must be a World")
         n = len(world.shapes)
         extras: list[Mapping[str, Any]] = [{}] * n if properties is None else list(properties)
         if len(extras) != n:
             raise ValueError(f"properties must be one dict for each of the {n} shapes, got {len(extras)}")
+    if path.suffix.lower() == ".wbt":
+        write_webots(world, path)
+        return
     features = []
     for number, (shape, extra) in enumerate(zip(world.shapes, extras, strict=True), start=1):
         with naming(f"{path.name}, feature {number}"):
@@ -87,8 +92,11 @@ def save_world(world: World, path: StrPath, *, properties: Sequence[Mapping[str,
     write_map(path, {"size": world.size} | ({"walls": True} if world.walled else {}), features)
 
 
-def load_world(path: StrPath) -> World:
+def load_world(path: StrPath, *, height: float = 0.1) -> World:
     """Read a world from a file ending in ``.geojson`` or ``.json``: a FeatureCollection, one Feature or one geometry.
+
+    Or one of Webots (``.wbt``) or Gazebo (``.sdf``, ``.world``): what stands at the ``height`` of the LiDAR, metres; a
+    ``LikelyWrong`` warning says what was passed over, such as meshes. See ``webots`` and ``sdf`` for what is read.
 
     A Polygon becomes a ``Polygon`` (first corner first, turned counter-clockwise), a Point with the property ``radius``
     a ``Circle``. The board's size is the member ``size`` beside the features, 1 m when there is none; it has walls when
@@ -108,7 +116,10 @@ def load_world(path: StrPath) -> World:
     ...     load_world(path).shapes
     (Polygon([(0, 0), (1, 0), (0, 1)]),)
     """
-    path = as_path(path, MAP_ENDINGS, "a map")
+    path = as_path(path, (*MAP_ENDINGS, ".wbt", ".sdf", ".world"), "a map")
+    height = as_positive(height, "height", zero=True)
+    if path.suffix.lower() not in MAP_ENDINGS:
+        return (read_webots if path.suffix.lower() == ".wbt" else read_sdf)(path, height)
     document, features = read_map(path)
     with naming(path.name):
         size = document.get("size", 1.0)

@@ -115,9 +115,13 @@ def cut_off(name, data, read, folder, step=1):
             if not str(error).startswith(name):
                 wrong.append(f"{name}, {length} bytes: {error}")
             continue
+        if name == "a.wbt":  # nothing tells where it ends
+            now, before = list(now.shapes), list(getattr(before, "shapes", before))
+        if name == "a.csv":  # one scan: its beams
+            now, before = now[0], before[0] if isinstance(before[0], list) else before
         if name.endswith(".ipynb"):  # its reader says what is wrong
             fine = now is not None or data[length:].isspace()
-        elif name in ("a.geojson", "a.npz", "a.json", "graded.json"):
+        elif name in ("a.geojson", "a.npz", "a.json", "graded.json", "a.sdf"):
             fine = now == before and data[length:].isspace()
         else:  # line by line: the old without its end
             fine = now == before[: len(now)] or name == "students.csv"

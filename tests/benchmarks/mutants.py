@@ -16,6 +16,7 @@ import tempfile
 import time
 import zipfile
 from contextlib import suppress
+from importlib.util import find_spec
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -28,6 +29,7 @@ from primkit.course.graded import _entries_in
 from primkit.course.handed_in import _not_a_notebook
 from primkit.study import run_study
 from primkit.study.journal import open_journal
+from tests.recorded import BAGS, driven_bag, table, write_log
 
 SECONDS = 2.0  # of processor time, for one file
 PARTS = (
@@ -58,6 +60,12 @@ PARTS = (
         b"PK\x05\x06",
     ),
 )
+SDF = (
+    "<?xml version='1.0'?><sdf version='1.8'><world name='w'><model name='m'><pose>1 0 0 0 0 0.5</pose><link name='l'>"
+    "<collision name='a'><geometry><box><size>2 1 0.5</size></box></geometry></collision><collision name='b'><pose>"
+    "0 2 0 0 0 0</pose><geometry><cylinder><radius>0.3</radius><length>1</length></cylinder></geometry></collision>"
+    "</link></model><include><uri>model://sun</uri></include></world></sdf>"
+)
 VALUES = (None, True, False, 0, -1, 1e308, 10**400, "", "x", [], {}, [[]], [None], {"type": "Point"}, "\ud800", 5, 0.5)
 
 
@@ -74,10 +82,13 @@ def seeds(folder):
     formats.save_drive(formats.Drive(seen, [(0, 0), (1, 1)], pk.Lidar(beams=12)), folder / "a.jsonl")
     formats.save_route(route, folder / "a.json")
     board = pk.World([pk.Circle((0, 0), 0.06)])
+    formats.save_world(world, folder / "a.wbt")
+    (folder / "a.sdf").write_text(SDF)
     run_study({"one": board}, {"ROBUST": pk.ROBUST}, folder=folder, jobs=1, progress=False)
     (folder / STUDENTS).write_text("id,first_name,last_name,email\nada,Ada,L,ada@x.org\nbob,Bob,,\n")
     cell = {"cell_type": "code", "source": "1", "outputs": [], "metadata": {"nbgrader": {"grade_id": "a"}}}
     (folder / "a.ipynb").write_text(json.dumps({"cells": [cell, {**cell, "metadata": {}}], "metadata": {}}))
+    formats_of_robots = _recordings(folder, seen)
     fault = {"student": "ada", "cell": "-", "name": "bad", "says": "so"}
     (folder / "graded.json").write_text(json.dumps({"ada": {"hash": "0", "graded": True, "faults": [fault]}}))
 
@@ -101,7 +112,25 @@ def seeds(folder):
         "a.ipynb": _not_a_notebook,
         "graded.json": _entries_in,
     }
+    readers |= {"a.wbt": formats.load_world, "a.sdf": formats.load_world}
+    readers |= dict.fromkeys(formats_of_robots, formats.load_scans)
     return {name: ((folder / name).read_bytes(), read) for name, read in readers.items()}
+
+
+def _recordings(folder, seen):
+    """Write recordings of robots into the folder, and return their names; bags only where rosbags is installed."""
+    ranges = np.where(seen.hits, seen.ranges, 81.91)
+    write_log(folder / "a.log", seen.poses, ranges, digits=3)
+    write_log(folder / "b.log.gz", seen.poses, ranges, digits=3, laser="ROBOTLASER1", start=0.0, step=0.5)
+    (folder / "a.csv").write_text(table(seen.angles, ranges[0]))
+    if find_spec("rosbags") is None:
+        return ["a.log", "b.log.gz", "a.csv"]
+    for kind in BAGS:
+        path = folder / f"written_{kind}"
+        path.mkdir()
+        bag = driven_bag(path, kind, seen, pk.Lidar(beams=12), mounted=(0.1, 0.0, 0.0))
+        (bag if bag.is_file() else next(bag.glob(f"*.{kind}"))).replace(folder / f"a.{kind}")
+    return ["a.log", "b.log.gz", "a.csv", *(f"a.{kind}" for kind in BAGS)]
 
 
 # --- how it is damaged --------------------------------------------------------------------------------------
