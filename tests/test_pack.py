@@ -351,6 +351,15 @@ def test_the_slides_draw_every_figure_and_show_it():
     assert shown == FIGURES
 
 
+def test_shown_as_slides_there_is_one_for_each_figure_and_no_code():
+    from nbconvert import SlidesExporter
+
+    html, _ = SlidesExporter().from_filename(str(NOTEBOOK))
+    assert html.count("<section>") == 2 * (1 + len(FIGURES))  # a title; and each stands in a stack of its own
+    assert html.count("<img") == len(FIGURES)
+    assert "import numpy" not in html
+
+
 def test_every_picture_has_words_in_its_place():
     texts = ["\n".join(form.text_cells(SLIDES)), *PAGES.values()]
     assert [alt for text in texts for alt in re.findall(r"!\[(.*?)\]", text) if len(alt.split()) < 10] == []

@@ -15,9 +15,28 @@ ROOT = Path(__file__).resolve().parent.parent
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
 
-def environment() -> list[str]:
-    lines = (ROOT / "environment.txt").read_text(encoding="utf-8").splitlines()
+CLASSROOM = ROOT / "environment.txt"
+TEACHERS = ROOT / "notebooks" / "teacher" / "environment.txt"  # and the tests'
+
+
+def lines_of(file: Path) -> list[str]:
+    lines = file.read_text(encoding="utf-8").splitlines()
     return [line for line in (re.sub(r"(^|\s)#.*", "", line).strip() for line in lines) if line]
+
+
+def environment() -> list[str]:
+    """Return the lines of both: the teacher's has the classroom's in it."""
+    first, *more = lines_of(TEACHERS)
+    assert (TEACHERS.parent / first.removeprefix("-r ")).resolve() == CLASSROOM
+    return [*lines_of(CLASSROOM), *more]
+
+
+def test_a_student_s_lab_shows_no_teacher_s_panels() -> None:
+    """nbgrader puts its menu, Validate and Create Assignment into every Lab that it is installed beside."""
+    assert not any(line.startswith("nbgrader") for line in lines_of(CLASSROOM))
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    start = readme[readme.index("<!-- ci: map -->") :].split("```")[1]
+    assert "-r environment.txt" in start
 
 
 def pins() -> dict[str, str]:

@@ -26,7 +26,7 @@ from .moved import old_names
 from .students import SAVE_AS, read_students
 
 LEAST_PYTHON = (3, 11)
-ENVIRONMENT = Path(__file__).resolve().parents[2] / "environment.txt"  # in a clone
+ENVIRONMENT = Path(__file__).resolve().parents[2] / "notebooks" / "teacher" / "environment.txt"  # in a clone
 REQUIRED_PACKAGES = ("nbgrader", "jupyterlab", "ipykernel", "nbconvert", "psutil")
 PIN = re.compile(r"^([\w.-]+)(?:\[[\w,]+\])?==([\w.]+)")
 
@@ -63,8 +63,7 @@ def _python() -> Iterator[Finding]:
 def _packages(environment: Path) -> Iterator[Finding]:
     """Compare what is installed with what environment.txt says, or only look whether it is there."""
     if environment.is_file():
-        lines = environment.read_text(encoding="utf-8").splitlines()
-        pins = {match[1]: match[2] for line in lines if (match := PIN.match(line))}
+        pins = _pins(environment)
         mend = f"{Path(sys.executable)} -m pip install -r {environment}"
     else:
         pins = dict.fromkeys(REQUIRED_PACKAGES, "")  # by their own names: "primkit" is somebody else's on PyPI
@@ -81,6 +80,17 @@ def _packages(environment: Path) -> Iterator[Finding]:
     if not wrong:
         found = f"all {len(pins)} as in {environment.name}" if environment.is_file() else "all there"
         yield Finding("packages", found, fine=True)
+
+
+def _pins(environment: Path) -> dict[str, str]:
+    """Return the versions that a file asks for, and those that it names with -r."""
+    pins: dict[str, str] = {}
+    for line in environment.read_text(encoding="utf-8").splitlines():
+        if line.startswith("-r "):
+            pins |= _pins(environment.parent / line[3:].strip())
+        elif match := PIN.match(line):
+            pins[match[1]] = match[2]
+    return pins
 
 
 def _commands() -> Iterator[Finding]:

@@ -139,7 +139,8 @@ class Twin(Picture):
 
     def _repr_html_(self) -> str:
         unfolded = ".primkit-twin::details-content{content-visibility:visible;height:auto}"
-        opened = f"<style>@media print{{{unfolded}}}body.jp-Notebook {unfolded}</style>"  # on paper, and in an export
+        on_paper = "pre{white-space:pre-wrap!important;overflow-wrap:anywhere}"  # lines that are too long go on below
+        opened = f"<style>@media print{{{unfolded}{on_paper}}}body.jp-Notebook {unfolded}</style>"  # or in an export
         head = "<summary>The same picture with each named setting, side by side</summary>"
         return f'{opened}<details class="primkit-twin">{head}{super()._repr_html_()}</details>'
 
