@@ -444,7 +444,7 @@ REFUSED = {
     "no such file": ("map --map nowhere.geojson", "primkit: nowhere.geojson: there is no such file in {here}"),
     "no map": (
         "map --map maps/notes.txt",
-        "primkit: notes.txt: the name of a map must end in .geojson or .json, got .txt",
+        "primkit: notes.txt: the name of a map must end in .geojson or .json or .wbt or .sdf or .world, got .txt",
     ),
     "damaged map": (
         "map --map bad.geojson",
@@ -526,7 +526,7 @@ REFUSED = {
     ),
     "map's ending": (
         "make-map --out map.png",
-        "primkit: map.png: the name of a map must end in .geojson or .json, got .png",
+        "primkit: map.png: the name of a map must end in .geojson or .json or .wbt, got .png",
     ),
     "map's folder": ("make-map --out no/map.geojson", "primkit: map.geojson: there is no folder {no}"),
 }

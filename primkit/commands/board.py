@@ -1,4 +1,4 @@
-"""Board: ``primkit map`` maps one board, ``primkit make-map`` draws one.
+"""Board: ``primkit map`` maps one board, or what a robot recorded; ``primkit make-map`` draws a board.
 
 In:  the options of the command.
 Out: a report on the screen, a picture and maps in a folder; or one map in a file.
@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from ..table import count
+from .recording import LIDARS, lidar_named, map_recording, span
 from .words import Parser, millimetres, path, say, share, whole
 
 if TYPE_CHECKING:
@@ -22,13 +23,15 @@ if TYPE_CHECKING:
 
 SHAPES = 4
 
-MAP_TEXT = "simulate a board, map it, and compare with the truth"
+MAP_TEXT = "simulate a board, map it, and compare with the truth; or map what a robot recorded"
 MAP_EXAMPLES = """\
 examples:
   primkit map
   primkit map --shapes 3 --seed 11 --style free
   primkit map --settings paper           the published method
   primkit map --noise 2 --spurious 0.01  a worse sensor: 2 mm, and 1 % of random ranges
+  primkit map --scans drive.bag --topic /scan /odom
+  primkit map --scans sweep.csv --lidar rplidar-a1 --units deg mm
 """
 MAKE_TEXT = "write a random board to a GeoJSON file"
 MAKE_EXAMPLES = """\
@@ -50,6 +53,16 @@ def map_options(parser: Parser) -> None:
     parser.option("--noise", "MM", millimetres, 0.0, "standard deviation of the ranges in mm")
     parser.option("--spurious", "SHARE", share, 0.0, "share of beams with a random range, 0 to 1")
     parser.option("--out", "DIR", path, Path("out"), "folder for map.png, found.geojson and truth.geojson")
+    recorded = parser.add_argument_group("what a robot recorded")
+    kinds = "scans to map in place of a board: .log(.gz) of CARMEN, .bag, .db3 or .mcap of ROS, .csv, .npz"
+    recorded.add_argument("--scans", metavar="FILE", type=path, help=kinds)
+    recorded.add_argument("--topic", metavar="NAME", nargs="+", default=(), help="which laser and which odometry")
+    recorded.add_argument("--units", metavar="UNIT", nargs="+", default=(), help="of a table: deg or rad, mm, cm or m")
+    recorded.add_argument(
+        "--lidar", metavar="|".join(LIDARS), type=lidar_named, help="the sensor, if the file is silent"
+    )
+    recorded.add_argument("--only", metavar="A:B", type=span, help="scans A to B - 1, from 0 (default: all)")
+    recorded.add_argument("--cell", metavar="MM", type=millimetres, help="side of the cells (default: by the ranges)")
 
 
 def make_map_options(parser: Parser) -> None:
@@ -73,7 +86,10 @@ def _board_options(parser: Parser) -> None:
 
 
 def map_board(arguments: argparse.Namespace) -> None:
-    """Simulate one board, map it, print how right it is, and write the picture and the maps."""
+    """Simulate one board, map it, print how right it is, and write the picture and the maps; or map a recording."""
+    if arguments.scans is not None:
+        map_recording(arguments)
+        return
     from ..evaluation import evaluate
     from ..lidar import Lidar
     from ..study import METHODS, Experiment, make_folder, run

@@ -38,12 +38,21 @@ from .accuracy import PANELS, plot_accuracy
 from .findings import plot_found
 from .look import draw_areas, draw_board
 from .pictures import plot_clusters, plot_points, plot_scan, plot_world
-from .story import plot_story, save_figure
+from .story import plot_recording, plot_story, save_figure
 from .told import show_figures_with_words
 from .ways_driven import plot_change, plot_drive, plot_tour
 
 __all__ = ["plot_world", "plot_scan", "plot_points", "plot_clusters", "plot_found", "plot_story", "plot_drive"]
-__all__ += ["plot_tour", "plot_change", "plot_accuracy", "draw_board", "draw_areas", "save_figure", "PANELS"]
+__all__ += [
+    "plot_tour",
+    "plot_change",
+    "plot_accuracy",
+    "plot_recording",
+    "draw_board",
+    "draw_areas",
+    "save_figure",
+    "PANELS",
+]
 __all__ += ["BLUE", "VERMILION", "GREEN", "PURPLE", "ORANGE", "SKY", "INDIGO", "BLACK", "INK", "GREY", "PALE"]
 __all__ += ["KIND_COLORS", "KIND_INKS", "KIND_MARKERS"]
 

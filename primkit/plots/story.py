@@ -95,6 +95,21 @@ def plot_story(
     return figure
 
 
+def plot_recording(points: ArrayLike, found: Iterable[Detection | Shape], size: float) -> Figure:
+    """Return one figure with a map whose truth is not known: the points, shape (N, 2), metres, and what was found.
+
+    >>> [ax.get_title(loc="left") for ax in plot_recording([(0, 0)], [], 1.0).axes]
+    ['1 point on the grid', 'No shapes found']
+    """
+    with plain():
+        figure = ShownFigure(figsize=(10, 5.0), layout="constrained")
+        left, right = figure.subplots(1, 2)
+        plot_points(points, left, size=size)
+        plot_found(found, World(size=size), right)
+        freeze(figure)
+    return figure
+
+
 def freeze(figure: Figure) -> None:
     """Lay the figure out once and for all: else each drawing moves things by a hair, and its bytes change."""
     engine = figure.get_layout_engine()
