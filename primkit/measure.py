@@ -281,7 +281,7 @@ def measure_shape(
     resolution : float
         Side of the cells that the points lie on, metres.
     rng : int or numpy.random.Generator, optional
-        Seed or generator for the RANSAC stages.
+        Not used: nothing is drawn. It is there so that every step of the story can be called alike.
 
     Returns
     -------

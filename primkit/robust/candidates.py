@@ -32,18 +32,18 @@ from ..circles import fit_circle, nearer_circle
 from ..lines import Line, fit_line
 from ..seen import REACH
 from ..shapes import KINDS, Circle
-from .cuts import UNSEEN, Cut, best_cuts, by_bearing, chords, frames, in_company, outlines_with
+from .cuts import Cut, best_cuts, by_bearing, chords, frames, in_company, outlines_with
 from .evidence import (
     CERTAIN,
     NAMELESS_COST,
     NEARLY_ALL,
     OF_CIRCLE,
-    OF_FREE_SIDES,
     OF_SQUARE,
     OF_WALL,
     Candidate,
     Figure,
     judged,
+    of_sides,
     price,
 )
 from .free import free_outline
@@ -174,7 +174,7 @@ class Ways:
     @classmethod
     def through(cls, points: Floats, spread: float) -> Ways:
         """Return the ways to explain these points."""
-        unseen = UNSEEN + SIGMAS * (spread - LEAST_SPREAD)
+        unseen = REACH + SIGMAS * (spread - LEAST_SPREAD)
         ways = cls(points, spread, best_cuts(points), chords(points, unseen), {}, {})
         circle, wall = fit_circle(points, "taubin"), fit_line(points)
         if circle is not None:
@@ -196,7 +196,7 @@ class Ways:
 
     def _cost(self, squares: float, way: Way) -> float:
         k, square = way
-        fitted = (OF_CIRCLE, OF_WALL)[k] if k <= 1 else OF_SQUARE if square else OF_FREE_SIDES[k]
+        fitted = (OF_CIRCLE, OF_WALL)[k] if k <= 1 else OF_SQUARE if square else of_sides(k)
         nameless = NAMELESS_COST if k == 4 and not square else 0.0
         return squares / self.spread**2 + price(fitted, len(self.points), self.spread) + nameless
 

@@ -26,12 +26,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import Floats
+from ..seen import REACH
 from .outlines import QUARTERS, Outlines, from_angle_order, joined
 
 KNOTS = 60  # cuts lie between two of so many places along the outline, a centimetre apart or less
 MOST_PIECES = 5
 LEAST_STRETCH = 0.01  # m: two thirds of the shortest side; the rest of it may not have been seen
-UNSEEN = 0.012  # m: a wider gap between neighbours is a stretch that no beam reached
 MOST_CHORDS = 2
 COMPANY, LEAST_COMPANY = 0.009, 3  # m: a point with fewer others as near is a stray, if most have as many
 MOST_IN_COMPANY = 0.5
@@ -82,7 +82,7 @@ def by_bearing(points: Floats) -> Floats:
     return points[np.argsort(np.arctan2(points[:, 1], points[:, 0]), kind="stable")]
 
 
-def chords(ordered: Floats, unseen: float = UNSEEN) -> list[Line]:
+def chords(ordered: Floats, unseen: float = REACH) -> list[Line]:
     """Return the lines over the widest gaps between neighbours, those wider than ``unseen``, metres."""
     gap = _gaps(ordered)
     widest = [i for i in np.argsort(-gap, kind="stable")[:MOST_CHORDS].tolist() if gap[i] > unseen]

@@ -50,7 +50,6 @@ CERTAIN, NEARLY_ALL = 10.0, 0.9
 OF_CIRCLE = np.array([2.0, 2.0, 1.0])
 OF_SIDE = np.array([1.0, 3.0])
 OF_SQUARE = np.array([4.0, 4.0, 4.0, 4.0, 3.0])
-OF_FREE_SIDES = {k: np.tile(OF_SIDE * k, k) for k in (3, 4, 5)}  # a side has a kth of the points
 OF_WALL = np.array([1.0, 3.0, 1.0, 1.0])
 
 
@@ -130,7 +129,7 @@ def judged(points: Floats, figure: Figure, spread: float, *, square: bool = Fals
         corners, after = figure.ends()
         lengths, k = np.hypot(*(after - corners)[0].T), corners.shape[1]
         places = places_between(corners[0], after[0])
-        fitted = OF_SQUARE if square else np.tile(OF_SIDE * k, k)  # a side has a kth of the points
+        fitted = OF_SQUARE if square else of_sides(k)
         distance = figure.distance(points)[0]
         share, _, each = shares(points, figure, spread)
         on_it, log_likelihood = float(share.sum()), float(each[0])
@@ -141,6 +140,11 @@ def judged(points: Floats, figure: Figure, spread: float, *, square: bool = Fals
     named = isinstance(figure, Circle) or square or (figure.kind != "polygon" and len(lengths) != 4)
     nameless = 0.0 if named else NAMELESS_COST if min(seen) >= NEARLY_ALL else NAMELESS_PART_COST
     return Candidate(figure, square, cost + nameless, length, on_it, seen, nameless)
+
+
+def of_sides(k: int) -> Floats:
+    """Return the variances of k sides that are fitted each for itself: a side has a kth of the points."""
+    return np.tile(OF_SIDE * k, k)
 
 
 def price(fitted: Floats, n_points: int, spread: float) -> float:
