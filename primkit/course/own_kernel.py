@@ -22,6 +22,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
+import matplotlib.font_manager  # which makes the list of fonts unless it is there: that takes seconds
 import psutil
 from nbclient.exceptions import DeadKernelError
 from nbclient.util import ensure_async
@@ -78,12 +79,9 @@ class OwnKernel(Execute):  # type: ignore[misc]
         self.confined = bubblewrap_works()
         for name in OWN_FOLDERS:
             (scratch / name).mkdir(exist_ok=True)
-        fonts = Path(self.course) / ".primkit" / "matplotlib"  # the list takes seconds to make: one for all
-        if not any(fonts.glob("*.json")):
-            fonts.mkdir(parents=True, exist_ok=True)
-            words = [sys.executable, "-c", "import matplotlib.font_manager"]
-            subprocess.run(words, env={**os.environ, "MPLCONFIGDIR": str(fonts)}, capture_output=True, check=False)
-        shutil.copytree(fonts, scratch / "home" / "matplotlib")
+        (scratch / "home" / "matplotlib").mkdir()
+        for fonts in Path(matplotlib.get_cachedir()).glob("fontlist-*.json"):
+            shutil.copy(fonts, scratch / "home" / "matplotlib")
         self.library = _library_without(scratch / "library", without) if without else PACKAGE
 
     def create_kernel_manager(self) -> Any:
