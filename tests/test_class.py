@@ -125,9 +125,20 @@ def test_every_fault_has_its_line(handed_back):
     for student, (kind, trouble) in class_.items():
         if trouble.says:
             assert any(student in line and trouble.says in line for line in told), kind
-    endless = by_kind(class_)["endless"]
+    endless, right = by_kind(class_)["endless"], by_kind(class_)["right"]
     wrong = [row for row in table(course / "reports" / PS / "wrong.csv") if row["student"] == endless]
     assert {row["name"] for row in wrong if row["part"]} == {"out of time"}
+    took = {student: seconds_of(course, student) for student in (endless, right)}
+    assert took[endless] > 4.0 > 2.0 > took[right] > 0.0  # each of four parts has a second
+    rows = [row for row in table(course / "reports" / PS / "overview.csv") if not row["part"]]
+    assert all(0.0 < float(row["seconds"]) < 2.0 for row in rows)  # the median of the class
+
+
+def seconds_of(course, student):
+    """The processor time of a task, as it stands in what was graded."""
+    cells = read(course / "autograded" / student / PS / f"{PS}.ipynb")["cells"]
+    (cell,) = [cell for cell in cells if about(cell).get("grade_id") == f"{TASK}-hidden"]
+    return cell["metadata"]["primkit"]["seconds"]
 
 
 class Harmful(HTMLParser):

@@ -106,7 +106,9 @@ class CarefulExecute(OwnKernel):
             for index, cell in enumerate(self.nb.cells):
                 if self.judging and (name := self._graded(cell)):
                     cell.source = self.judging.graded[name]["source"]
+                    before = self.spent()
                     cell.outputs = self.judging.outputs(name, index, self.workers)
+                    cell.metadata["primkit"] = {"seconds": round(max(0.0, self.spent() - before), 3)}
                     self._note_judged(index)
 
     def _graded(self, cell: Any) -> str | None:

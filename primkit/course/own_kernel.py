@@ -22,13 +22,13 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-import matplotlib.font_manager  # which makes the list of fonts unless it is there: that takes seconds
 import psutil
 from nbclient.exceptions import DeadKernelError
 from nbclient.util import ensure_async
 from nbgrader.preprocessors import Execute
 from traitlets import Integer, Unicode
 
+from ..plots.fonts import font_lists
 from .confining import DATA, OWN_FOLDERS, PACKAGE, bubblewrap_works, limit_processes, walls
 from .course import ASSIGNMENTS
 
@@ -80,7 +80,7 @@ class OwnKernel(Execute):  # type: ignore[misc]
         for name in OWN_FOLDERS:
             (scratch / name).mkdir(exist_ok=True)
         (scratch / "home" / "matplotlib").mkdir()
-        for fonts in Path(matplotlib.get_cachedir()).glob("fontlist-*.json"):
+        for fonts in font_lists():
             shutil.copy(fonts, scratch / "home" / "matplotlib")
         self.library = _library_without(scratch / "library", without) if without else PACKAGE
 

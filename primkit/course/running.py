@@ -104,9 +104,11 @@ def _run(*command: object) -> int:
         nursery = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, encoding="utf-8")
         atexit.register(nursery.communicate)  # so it ends by itself
     said = ""
-    with suppress(OSError):  # it has ended
-        print(json.dumps(command), file=nursery.stdin, flush=True)
-        said = nursery.stdout.readline() if nursery.stdout else ""
+    if nursery.stdin and nursery.stdout:
+        with suppress(OSError):  # it has ended
+            nursery.stdin.write(f"{json.dumps(command)}\n")
+            nursery.stdin.flush()
+        said = nursery.stdout.readline()
     if not said:
         return nursery.wait()
     IDLE.put(nursery)
