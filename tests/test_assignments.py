@@ -112,7 +112,7 @@ def visible_points(task, function):
 @cache
 def marked(task, function):
     """Return a function's mark; a busy machine has time."""
-    return TASKS[task].marked(function, seconds=60)
+    return TASKS[task].marked(function)
 
 
 def wrong_ones(task):

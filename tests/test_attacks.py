@@ -45,7 +45,8 @@ def patch_signal(number, value):
     patched.append(lambda: signal.signal(number, before))
 """
 UNDO = "while patched:\n    patched.pop()()"
-PATIENCE = 12  # s for a cell: so long each of those waits that breaks its kernel
+PATIENCE = 8  # s for a cell: so long each of those waits that breaks its kernel
+PART_SECONDS = 0.5  # of processor time: a right answer needs some hundredths
 IN_ONE = 18  # attacks in one notebook
 SECRET = "this is PRIVATE"
 
@@ -107,7 +108,8 @@ def graded(tmp_path_factory):
     (made / "source" / "halves" / "sub" / "halves.py").write_text("task = None  # owned")
     course = new_course(root / "course", made)
     config = course.root / "nbgrader_config.py"
-    config.write_text(re.sub(r"timeout = \d+", f"timeout = {PATIENCE}", config.read_text()))
+    settings = re.sub(r"timeout = \d+", f"timeout = {PATIENCE}", config.read_text())
+    config.write_text(settings.replace("c.CarefulExecute.seconds = 5", f"c.CarefulExecute.seconds = {PART_SECONDS}"))
     (course.root / "students.csv").write_text("id,first_name,last_name,email\nada,,,\nmallory,,,\n")
     for name in ("halves", "honest"):
         teach(course.root, "release", name)
@@ -129,10 +131,7 @@ def graded(tmp_path_factory):
         for book, tasks in BATCHES.items():
             path = course.root / "submitted" / "mallory" / "halves" / f"{book}.ipynb"
             path.write_text(nbformat.writes(nbformat.from_dict(attacking(read(path), tasks, known))))
-        kept = [
-            course.root / name
-            for name in ("grader", "source", "submitted", "release", ".primkit/matplotlib", "autograded/ada")
-        ]
+        kept = [course.root / name for name in ("grader", "source", "submitted", "release", "autograded/ada")]
         before, before_files = tree_hash(*kept), sorted(path.name for path in course.root.iterdir())
         with pytest.MonkeyPatch.context() as patch:
             patch.setenv("LEAKED", "secret of the shell")

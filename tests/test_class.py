@@ -36,7 +36,7 @@ def handed_back(tmp_path_factory):
     teach(folder, "new-course", "course")
     course = folder / "course"
     config = course / "nbgrader_config.py"
-    config.write_text(config.read_text("utf-8").replace("timeout = 60", "timeout = 20"), "utf-8")
+    config.write_text(config.read_text("utf-8").replace("c.CarefulExecute.seconds = 5", "c.CarefulExecute.seconds = 1"))
     (course / "course.toml").write_text(SETTINGS)
     teach(course, "release", PS)
     rows, class_ = hand_in(folder, ProblemSet(course, PS), np.random.default_rng(1), 12)
@@ -46,7 +46,7 @@ def handed_back(tmp_path_factory):
     if os.name == "posix":  # T2
         with open(os.fsencode(course / "submitted" / "s_002" / PS) + b"/aufgabe_\xfc.txt", "wb") as file:
             file.write(b"x")
-    said["killed"] = killed_after(2, course, "grade", PS)
+    said["killed"] = killed_after(2, course, "grade", PS, "--at-once", "1")
     said["grade"] = teach(course, "grade", PS)
     said["report"] = teach(course, "report", PS)
     comment_on(course / "reports" / PS / "kinds.csv", COMMENT)
@@ -125,9 +125,20 @@ def test_every_fault_has_its_line(handed_back):
     for student, (kind, trouble) in class_.items():
         if trouble.says:
             assert any(student in line and trouble.says in line for line in told), kind
-    endless = by_kind(class_)["endless"]
+    endless, right = by_kind(class_)["endless"], by_kind(class_)["right"]
     wrong = [row for row in table(course / "reports" / PS / "wrong.csv") if row["student"] == endless]
     assert {row["name"] for row in wrong if row["part"]} == {"out of time"}
+    took = {student: seconds_of(course, student) for student in (endless, right)}
+    assert took[endless] > 4.0 > 2.0 > took[right] > 0.0  # each of four parts has a second
+    rows = [row for row in table(course / "reports" / PS / "overview.csv") if not row["part"]]
+    assert all(0.0 < float(row["seconds"]) < 2.0 for row in rows)  # the median of the class
+
+
+def seconds_of(course, student):
+    """The processor time of a task, as it stands in what was graded."""
+    cells = read(course / "autograded" / student / PS / f"{PS}.ipynb")["cells"]
+    (cell,) = [cell for cell in cells if about(cell).get("grade_id") == f"{TASK}-hidden"]
+    return cell["metadata"]["primkit"]["seconds"]
 
 
 class Harmful(HTMLParser):
@@ -303,7 +314,7 @@ def test_a_release_that_fails_changes_nothing(handed_back):
     path.write_text(source.replace("### END SOLUTION", "### END OF IT"), "utf-8")
     assert "primkit: " in teach(again.root, "release", PS, code=2)
     assert (tree_hash(again.root / "release"), book.read_bytes()) == before
-    assert [entry.name for entry in (again.root / ".primkit").iterdir()] in (["matplotlib", "ps1.lock"], ["ps1.lock"])
+    assert [entry.name for entry in (again.root / ".primkit").iterdir()] == ["ps1.lock"]
 
 
 def test_other_points_a_clearer_text_and_a_new_student_in_mid_term(handed_back):

@@ -70,6 +70,7 @@ c.AssignLatePenalties.plugin_class = "primkit.course.late.LateRule"  # its setti
 c.GenerateFeedback.preprocessors = {FEEDBACK_STEPS}
 c.CarefulExecute.course = course
 c.CarefulExecute.timeout = 60  # seconds for each cell
+c.CarefulExecute.seconds = 5  # of processor time for each part of a hidden test
 c.CarefulExecute.megabytes = 4096  # of memory for each submission
 '''
 SETTINGS = "course.toml"

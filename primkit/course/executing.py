@@ -30,7 +30,7 @@ from typing import Any
 from nbclient.exceptions import CellTimeoutError, DeadKernelError
 from nbclient.util import run_sync
 from nbformat.v4 import new_output
-from traitlets import Integer
+from traitlets import Float, Integer
 
 from ..formats import save_scans
 from ..world import World
@@ -57,6 +57,8 @@ class CarefulExecute(OwnKernel):
     """Run the cells of a submission; see this module."""
 
     timeout = Integer(60, help="Time limit of a cell, in seconds.", allow_none=True).tag(config=True)
+    seconds = Float(5.0, help="Processor time for the calls of each visible test, and of each part of a hidden one.")
+    seconds = seconds.tag(config=True)
 
     # --- a notebook ---------------------------------------------------------------------------------------
 
@@ -79,7 +81,8 @@ class CarefulExecute(OwnKernel):
             shutil.copytree(folder, self.given, copy_function=_copy_file, symlinks=False, ignore=_links)
             self.world = self._place_scans(about["student"])
             shutil.copytree(self.given, self.work, copy_function=_copy_file, dirs_exist_ok=True)
-            self.workers = Workers(Path(scratch, "run"), self.spent, None if FORKS else self._serve)
+            seconds = (self.judging and self.judging.seconds) or self.seconds
+            self.workers = Workers(Path(scratch, "run"), self.spent, seconds, None if FORKS else self._serve)
             resources["metadata"]["path"] = str(self.work)
             try:
                 nb, resources = super().preprocess(nb, resources, km)
@@ -103,7 +106,9 @@ class CarefulExecute(OwnKernel):
             for index, cell in enumerate(self.nb.cells):
                 if self.judging and (name := self._graded(cell)):
                     cell.source = self.judging.graded[name]["source"]
+                    before = self.spent()
                     cell.outputs = self.judging.outputs(name, index, self.workers)
+                    cell.metadata["primkit"] = {"seconds": round(max(0.0, self.spent() - before), 3)}
                     self._note_judged(index)
 
     def _graded(self, cell: Any) -> str | None:
@@ -166,6 +171,7 @@ class CarefulExecute(OwnKernel):
         if FORKS:
             with suppress(Exception):  # who has changed the kernel has no twin, and no points
                 self.run_silently(LEAVE.format("leave_twin", self.workers.address, index))
+            self.workers.meet()
 
     def _serve(self, index: int) -> None:
         """Let the kernel itself answer the judge; another one, if it still is at the part before."""

@@ -12,7 +12,6 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from datetime import datetime
 from statistics import StatisticsError, correlation
 from textwrap import shorten
 from typing import Any
@@ -37,7 +36,7 @@ class Line:
     points: dict[str, float] = field(default_factory=dict)  # of each student
     wrong: Counter[str] = field(default_factory=Counter)
     open: int = 0  # answers that a person has still to mark
-    seconds: list[float] = field(default_factory=list)  # that the task's cells took
+    seconds: list[float] = field(default_factory=list)  # of processor time that a student's functions took
 
     @property
     def mean(self) -> float:
@@ -188,7 +187,7 @@ def _differing(cell: str, part: str, line: Line, tasks: dict[str, Any]) -> str |
 
 @dataclass(frozen=True)
 class Shown:
-    """What a graded cell shows: a mark, or the name and words of an error; and how long it took."""
+    """What a graded cell shows: a mark, or an error's name and words; and how long the student's functions took."""
 
     mark: Any = None
     error: tuple[str, str] | None = None
@@ -218,17 +217,9 @@ def _read_cells(course: Course, name: str, student: str) -> dict[str, Shown]:
     for notebook in course.notebooks(name):
         for mark, cell in marked(read_notebook(course.root / "autograded" / student / name / f"{notebook}.ipynb")):
             if cell["metadata"]["nbgrader"].get("grade") and cell["cell_type"] == "code":
-                found[mark] = _read_outputs(cell["outputs"], _seconds(cell["metadata"].get("execution", {})))
+                seconds = cell["metadata"].get("primkit", {}).get("seconds")
+                found[mark] = _read_outputs(cell["outputs"], seconds)
     return found
-
-
-def _seconds(told: dict[str, str]) -> float | None:
-    """Return how long a cell took, by the times that it was begun and answered; None if it was not timed."""
-    try:
-        begun, ended = (datetime.fromisoformat(told[name]) for name in ("iopub.execute_input", "shell.execute_reply"))
-    except (KeyError, ValueError):
-        return None
-    return (ended - begun).total_seconds()
 
 
 def _without_numbers(says: str) -> str:

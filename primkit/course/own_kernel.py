@@ -28,6 +28,7 @@ from nbclient.util import ensure_async
 from nbgrader.preprocessors import Execute
 from traitlets import Integer, Unicode
 
+from ..plots.fonts import font_lists
 from .confining import DATA, OWN_FOLDERS, PACKAGE, bubblewrap_works, limit_processes, walls
 from .course import ASSIGNMENTS
 
@@ -78,12 +79,9 @@ class OwnKernel(Execute):  # type: ignore[misc]
         self.confined = bubblewrap_works()
         for name in OWN_FOLDERS:
             (scratch / name).mkdir(exist_ok=True)
-        fonts = Path(self.course) / ".primkit" / "matplotlib"  # the list takes seconds to make: one for all
-        if not any(fonts.glob("*.json")):
-            fonts.mkdir(parents=True, exist_ok=True)
-            words = [sys.executable, "-c", "import matplotlib.font_manager"]
-            subprocess.run(words, env={**os.environ, "MPLCONFIGDIR": str(fonts)}, capture_output=True, check=False)
-        shutil.copytree(fonts, scratch / "home" / "matplotlib")
+        (scratch / "home" / "matplotlib").mkdir()
+        for fonts in font_lists():
+            shutil.copy(fonts, scratch / "home" / "matplotlib")
         self.library = _library_without(scratch / "library", without) if without else PACKAGE
 
     def create_kernel_manager(self) -> Any:

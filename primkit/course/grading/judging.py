@@ -30,7 +30,6 @@ from .workers import Ended, OutOfTime, Workers
 
 FILE = "<graded cell>"
 HIDDEN_TESTS = "grader"  # the course's package
-CELL_SECONDS = 10.0  # of processor time for the calls of one graded cell; each part of a task has its own
 
 
 class Judging:
@@ -49,7 +48,7 @@ class Judging:
         self.cells = [{**cell, "source": "".join(cell["source"])} for cell in notebook["cells"]]
         settings = notebook["metadata"].get("primkit", {})
         self.without = list(settings.get("without", ()))  # modules that refuse to work
-        self.seconds = float(settings.get("seconds", CELL_SECONDS))
+        self.seconds = settings.get("seconds")  # where a course's usual ones are too few
         self.missing = missing
         code = [(cell, _about(cell)) for cell in self.cells if cell["cell_type"] == "code"]
         by_test = [(about, cell) for cell, about in code if about.get("grade") and not about.get("solution")]
@@ -74,7 +73,7 @@ class Judging:
         with shown_marks() as marks, redirect_stdout(said):
             try:
                 self._prepare(name)
-                workers.start(cell, self.seconds)
+                workers.start(cell)
                 there = workers.names(cell, self.students)
                 self.scope.update({each: there.get(each, self.missing(each)) for each in self.students})
                 value = _run(source, self.scope)

@@ -18,6 +18,7 @@ import inspect
 import io
 import os
 import signal
+import socket
 import sys
 import traceback
 import warnings
@@ -29,46 +30,53 @@ from typing import Any
 import numpy as np
 
 from .plain_values import pack, stranger
-from .wire import MOST_BYTES, HungUpError, connect, hear, say
+from .wire import FAMILY, MOST_BYTES, HungUpError, hear, say
 
 MESSAGE_LETTERS = 500  # of an error
 
 
 def leave_twin(address: Any, cell: int, scope: dict[str, Any]) -> None:
-    """Fork: the kernel goes on with the notebook, its twin stays as it is now."""
+    """Fork: the kernel goes on with the notebook, its twin stays as it is now; the judge knows of it already."""
+    control = _greet(address, cell, "twin")
     if os.fork():
+        control.close()
         return
     try:
-        _wait(address, cell, scope)
+        _wait(control, address, cell, scope)
     finally:
         os._exit(0)
 
 
 def serve(address: Any, cell: int, scope: dict[str, Any]) -> None:
     """Do a worker's work in this very process: where there is no fork, and in the end of the notebook."""
-    line = connect(address)
-    say(line, cell, "worker")
-    with suppress(HungUpError):
-        _answer_calls(line, scope)
+    _answer_calls(_greet(address, cell, "worker"), scope)
 
 
-def _wait(address: Any, cell: int, scope: dict[str, Any]) -> None:
+def _greet(address: Any, cell: int, role: str) -> socket.socket:
+    """Call the judge, and say as what."""
+    line = socket.socket(FAMILY)
+    line.connect(tuple(address) if isinstance(address, list) else address)
+    say(line, cell, role)
+    return line
+
+
+def _wait(control: socket.socket, address: Any, cell: int, scope: dict[str, Any]) -> None:
     """Make a worker whenever the judge asks for one, and end the one before."""
     os.setsid()  # whoever interrupts the notebook does not mean this
     nowhere = os.open(os.devnull, os.O_RDWR)
     for number in (0, 1, 2):
         os.dup2(nowhere, number)
-    control = connect(address)
-    say(control, cell, "twin")
     worker = 0
     with suppress(HungUpError):
         while hear(control, None):
             _end(worker)
+            line = _greet(address, cell, "worker")
             worker = os.fork()
             if not worker:
                 os.setsid()
-                serve(address, cell, scope)
+                _answer_calls(line, scope)
                 return
+            line.close()
     _end(worker)
 
 
@@ -78,15 +86,16 @@ def _end(worker: int) -> None:
         os.waitpid(worker, 0)
 
 
-def _answer_calls(line: Any, scope: dict[str, Any]) -> None:
-    while True:
-        wanted, *more = hear(line, None)
-        if wanted == "names":
-            say(line, {name: _described(scope[name]) for name in more[0] if name in scope})
-        else:
-            said = _called(scope[wanted], *more)
-            too_much = len(pack(said)) > MOST_BYTES
-            say(line, "returned", stranger("result of more than 1 MB"), {}) if too_much else say(line, *said)
+def _answer_calls(line: socket.socket, scope: dict[str, Any]) -> None:
+    with suppress(HungUpError):
+        while True:
+            wanted, *more = hear(line, None)
+            if wanted == "names":
+                say(line, {name: _described(scope[name]) for name in more[0] if name in scope})
+            else:
+                said = _called(scope[wanted], *more)
+                too_much = len(pack(said)) > MOST_BYTES
+                say(line, "returned", stranger("result of more than 1 MB"), {}) if too_much else say(line, *said)
 
 
 def _described(value: Any) -> Any:

@@ -29,7 +29,6 @@ from .mark import Mark, Row, show
 from .plain_values import pack, unpack
 from .workers import Ended, OutOfTime, Remote
 
-PART_SECONDS = 5.0  # of processor time for each part; a check with its few hundred cases needs less than one
 ALL_WRONG = re.compile(r"in (\d+) of \1 cases\.")  # all of them are wrong
 OTHER_FORM = re.compile(  # how judges begin what they expect, when a result has another form
     r"expected (a number such as|numbers in|points in an array|one label for|a circle:|a line:|a list|a set of)"
@@ -54,14 +53,14 @@ class Part:
     points: float
     check: Check
 
-    def answer(self, function: Any, seconds: float) -> Answer:
-        """Judge a function, whatever it does, within so many seconds where they can be told: see ``Remote``."""
+    def answer(self, function: Any) -> Answer:
+        """Judge a function, whatever it does."""
         name = self.check.name
         try:
             # The process that answers is timed, and not this one, which waits for it.
-            return _name_fault(self.check(function.afresh(seconds) if callable(function) else function, math.inf))
-        except OutOfTime:
-            says = f"{name} did not end within {seconds:g} s: is there a loop that never ends, or is it too slow?"
+            return _name_fault(self.check(function.afresh() if callable(function) else function, math.inf))
+        except OutOfTime as stop:
+            says = f"{name} {stop}: is there a loop that never ends, or is it too slow?"
             return Answer("error", says, "out of time")
         except KeyboardInterrupt:  # somebody waits no longer
             raise
@@ -82,7 +81,7 @@ class Missing:
     name: str
     answer: Answer
 
-    def afresh(self, _seconds: float) -> Missing:
+    def afresh(self) -> Missing:
         """Return itself."""
         return self
 
@@ -98,7 +97,7 @@ class Local:
     function: Callable[..., Any]
     remarks: set[str] = field(default_factory=set)
 
-    def afresh(self, _seconds: float) -> Local:
+    def afresh(self) -> Local:
         """Return itself: here nothing ends a loop but the person who waits for it."""
         self.remarks = set()
         return self
@@ -141,13 +140,7 @@ class Task:
         """The points of all parts together."""
         return float(sum(part.points for part in self.parts))
 
-    def mark(
-        self,
-        function: Callable[..., Any] | str,
-        scope: Mapping[str, Any] | None = None,
-        *,
-        seconds: float = PART_SECONDS,
-    ) -> float:
+    def mark(self, function: Callable[..., Any] | str, scope: Mapping[str, Any] | None = None) -> float:
         """Return the points, and show the table where a notebook can.
 
         Parameters
@@ -156,41 +149,32 @@ class Task:
             The student's function; or its name, for a cell that must not fail where the function is missing.
         scope : mapping, optional
             Where the name is looked up: a notebook's ``globals()``.
-        seconds : float
-            Time limit for each part, in seconds of processor time.
         """
-        mark = self.marked(function, scope, seconds=seconds)
+        mark = self.marked(function, scope)
         show(mark)
         return mark.points
 
-    def marked(
-        self,
-        function: Callable[..., Any] | str,
-        scope: Mapping[str, Any] | None = None,
-        *,
-        seconds: float = PART_SECONDS,
-    ) -> Mark:
+    def marked(self, function: Callable[..., Any] | str, scope: Mapping[str, Any] | None = None) -> Mark:
         """Return points and table together; see ``mark``."""
-        seconds = as_positive(seconds, "seconds")
         if isinstance(function, str):
             function = (scope or {}).get(function, missing(function))
         if isinstance(function, Missing):
             return Mark(self.name, tuple(Row(part.says, part.points, function.answer) for part in self.parts))
         if callable(function):
             function = self.called(function if isinstance(function, Remote) else Local(function))
-        return Mark(self.name, tuple(self._rows(function, seconds)))
+        return Mark(self.name, tuple(self._rows(function)))
 
     def called(self, function: Remote | Local) -> Any:
         """Return how the parts call a function: here, each of them as it is."""
         return function
 
-    def _rows(self, function: Any, seconds: float) -> Iterator[Row]:
+    def _rows(self, function: Any) -> Iterator[Row]:
         """Yield a row for each part; the first one whose time is over has one more try: the machine may be busy."""
         tries = 1
         for part in self.parts:
-            answer = part.answer(function, seconds)
+            answer = part.answer(function)
             if answer.fault == "out of time" and tries:
-                tries, answer = 0, part.answer(function, seconds)
+                tries, answer = 0, part.answer(function)
             yield Row(part.says, part.points, answer, tuple(sorted(getattr(function, "remarks", ()))))
 
 

@@ -26,13 +26,6 @@ class HungUpError(Exception):
     """The other side has ended, or says what nobody can read."""
 
 
-def connect(address: Any) -> socket.socket:
-    """Return a connection to whoever listens there."""
-    line = socket.socket(FAMILY)
-    line.connect(tuple(address) if isinstance(address, list) else address)
-    return line
-
-
 def say(line: socket.socket, *values: Any) -> None:
     """Send values."""
     content = pack(list(values))

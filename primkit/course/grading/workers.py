@@ -5,12 +5,13 @@ Out: for each part of a task a worker of its own, and in the place of a student'
      like it: the arguments go over, the result comes back, both as plain values.
 
 The time is read from outside. A part has some seconds of *processor* time, for a busy machine is no fault of the
-student's; on the clock it may take ``PATIENCE`` times as long.
+student's; on the clock it may take ``PATIENCE`` times as long, and longer where more processes than cores want to run.
 """
 
 from __future__ import annotations
 
 import inspect
+import select
 import socket
 import time
 from collections.abc import Callable, Sequence
@@ -18,11 +19,15 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from .plain_values import readable, stranger
-from .wire import ENDED, FAMILY, PAUSE, HungUpError, hear, say
+import psutil
 
-PATIENCE = 4  # seconds on the clock for each second of processor time
+from .plain_values import readable, stranger
+from .wire import ENDED, FAMILY, HungUpError, hear, say
+
+PATIENCE = 4  # seconds on the clock for each second of processor time, on a machine that is not busy
+MOST_BUSY = 10.0  # times as long on a busy one
 GREETING_SECONDS = 8.0  # until a worker is there: a fork takes milliseconds
+STRANGER_SECONDS = 1.0  # for a greeting that was sent before: whoever says nothing is no twin
 MOST_WAITING = 128  # connections
 
 
@@ -35,11 +40,24 @@ class Ended(BaseException):
 
 
 class Workers:
-    """All twins of one notebook, and the one worker that is at work."""
+    """All twins of one notebook, and the one worker that is at work.
 
-    def __init__(self, folder: Path, spent: Callable[[], float], make: Callable[[int], None] | None = None) -> None:
-        self.spent = spent  # seconds of processor time so far
-        self.make = make  # makes a worker for a cell where there are no twins
+    Parameters
+    ----------
+    folder : Path
+        Where the socket lies.
+    spent : callable
+        Tells the seconds of processor time that the kernel and its twins have used so far.
+    seconds : float
+        How many of them each worker has.
+    make : callable, optional
+        Makes a worker for a cell, where there are no twins.
+    """
+
+    def __init__(
+        self, folder: Path, spent: Callable[[], float], seconds: float, make: Callable[[int], None] | None = None
+    ) -> None:
+        self.spent, self.seconds, self.make = spent, seconds, make
         self.here = socket.socket(FAMILY)
         self.here.bind(("127.0.0.1", 0) if FAMILY == socket.AF_INET else str(folder / "judge"))
         self.here.listen(MOST_WAITING)
@@ -53,28 +71,40 @@ class Workers:
         for line in filter(None, [self.here, self.line, *self.twins.values()]):
             line.close()
 
-    def start(self, cell: int, seconds: float) -> None:
-        """Let a new worker begin, with so many seconds; raises Ended if there is none."""
+    def start(self, cell: int) -> None:
+        """Let a new worker begin; raises Ended if there is none."""
         self._let_go()
-        self.seconds = seconds
+        self.meet()
         self.began, self.spent_before = time.monotonic(), self.spent()
+        twin = self.twins.get(cell)
         if self.make:
             self.make(cell)
-        if self.make or self._told_to_work(cell):
-            self.line = self._greeted(cell, "worker")
+        elif twin:
+            with suppress(HungUpError):
+                say(twin, "work")
+        until = time.monotonic() + (GREETING_SECONDS if self.make or twin else 0.0)
+        while self.line is None and (left := until - time.monotonic()) > 0:
+            if twin in select.select([self.here, *filter(None, [twin])], [], [], left)[0]:
+                break  # it has ended: it says nothing
+            self.meet(cell)
         if self.line is None:
             raise Ended("the notebook's process does not answer: has a cell ended or changed it?")
         self.began, self.spent_before = time.monotonic(), self.spent()
 
-    def _told_to_work(self, cell: int) -> bool:
-        """Tell the twin of a cell to make a worker; the latest, for a kernel that has ended has left twins, too."""
-        while cell in self.twins or self._greeted(cell, "twin"):
-            try:
-                say(self.twins[cell], "work")
-                return True
-            except HungUpError:
-                self.twins.pop(cell).close()
-        return False
+    def meet(self, cell: int | None = None) -> None:
+        """Take in who has called: twins, and a worker of this cell. Whoever greets in another way is a stranger."""
+        until = time.monotonic() + GREETING_SECONDS
+        while time.monotonic() < until and select.select([self.here], [], [], 0.0)[0]:
+            line, greeting = self.here.accept()[0], []
+            with suppress(HungUpError):
+                greeting = hear(line, watch=_hurry(STRANGER_SECONDS))
+            if greeting == [cell, "worker"] and self.line is None:
+                self.line = line
+            elif len(greeting) == 2 and greeting[1] == "twin" and isinstance(greeting[0], int):
+                self.twins[greeting[0]] = line  # the latest: a kernel that has ended has left twins, too
+            else:
+                self.traces.append("a stranger calls the judge")
+                line.close()
 
     def names(self, cell: int, names: Sequence[str]) -> dict[str, Any]:
         """Return what the notebook has under these names: a ``Remote`` for a function."""
@@ -106,40 +136,24 @@ class Workers:
     def _watch(self) -> None:
         """Raise OutOfTime when the worker's time is over."""
         waited = time.monotonic() - self.began
-        if waited > self.seconds and (
-            waited > PATIENCE * self.seconds or self.spent() - self.spent_before > self.seconds
-        ):
+        if waited < self.seconds:
+            return
+        busy = psutil.getloadavg()[0] / (psutil.cpu_count() or 1)  # processes for each core
+        patience = PATIENCE * min(max(1.0, busy), MOST_BUSY)
+        if waited > patience * self.seconds or self.spent() - self.spent_before > self.seconds:
             self._let_go()
-            raise OutOfTime(f"stopped after {self.seconds:g} s")
+            raise OutOfTime(f"did not end within {self.seconds:g} s")
 
-    def _greeted(self, cell: int, role: str) -> socket.socket | None:
-        """Return the line of a twin or worker of this cell; lines of other twins are kept, all others dropped."""
-        until = time.monotonic() + GREETING_SECONDS
 
-        def hurry() -> None:
-            if time.monotonic() > until:
-                raise HungUpError("says nothing")
+def _hurry(seconds: float) -> Callable[[], None]:
+    """Return what raises HungUpError, once called after so many seconds."""
+    until = time.monotonic() + seconds
 
-        while time.monotonic() < until:
-            self.here.settimeout(PAUSE)
-            try:
-                line = self.here.accept()[0]
-            except TimeoutError:
-                continue
-            line.settimeout(None)
-            greeting: list[Any] = []
-            with suppress(HungUpError):
-                greeting = hear(line, watch=hurry)
-            if greeting == [cell, role] and role == "worker":
-                return line
-            if len(greeting) == 2 and greeting[1] == "twin" and isinstance(greeting[0], int):
-                self.twins[greeting[0]] = line
-                if greeting == [cell, role]:
-                    return line
-            else:
-                self.traces.append("a stranger calls the judge")
-                line.close()
-        return None
+    def watch() -> None:
+        if time.monotonic() > until:
+            raise HungUpError("says nothing")
+
+    return watch
 
 
 class Remote:
@@ -150,9 +164,9 @@ class Remote:
         self.__signature__ = signature
         self.remarks: set[str] = set()
 
-    def afresh(self, seconds: float) -> Remote:
-        """Let another worker do the next calls, with so many seconds for all of them."""
-        self.workers.start(self.cell, seconds)
+    def afresh(self) -> Remote:
+        """Let another worker do the next calls."""
+        self.workers.start(self.cell)
         self.remarks = set()
         return self
 

@@ -141,12 +141,12 @@ class Once:
         """What was seen beside."""
         return set(self.function.remarks)
 
-    def afresh(self, seconds: float) -> Once:
+    def afresh(self) -> Once:
         """Begin, and once more where the time was over."""
         if self.tries and (not self.known or any(isinstance(error, OutOfTime) for _, error in self.known.values())):
             self.tries -= 1
             self.known.clear()
-            self.function.afresh(seconds)
+            self.function.afresh()
         return self
 
     def __call__(self, scans: pk.Scans) -> Any:
@@ -178,14 +178,10 @@ class OwnMap(Task):
         """Let all parts look at one answer."""
         return Once(function)
 
-    def marked(self, function: Any, scope: Mapping[str, Any] | None = None, *, seconds: float = 60.0) -> Mark:
+    def marked(self, function: Any, scope: Mapping[str, Any] | None = None) -> Mark:
         """Return points and table together."""
-        mark = super().marked(function, scope, seconds=seconds)
+        mark = super().marked(function, scope)
         return Mark(mark.task, tuple(map(told_of_ready_made, mark.rows)))
-
-    def mark(self, function: Any, scope: Mapping[str, Any] | None = None, *, seconds: float = 60.0) -> float:
-        """Return the points, and show the table."""
-        return super().mark(function, scope, seconds=seconds)
 
 
 def kinds_of(case: Case) -> list[str]:
