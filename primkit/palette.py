@@ -9,6 +9,8 @@ Source: Okabe and Ito (2008), "Color Universal Design": colours that colour-blin
 is too faint on white and is left out.
 """
 
+from functools import cache
+
 from .shapes import Kind
 
 # The first four have a contrast of 3 and more to white.
@@ -26,6 +28,34 @@ def darker(color: str, share: float = 0.7) -> str:
     """
     parts = (int(color[k : k + 2], 16) for k in (1, 3, 5))
     return "#" + "".join(f"{round(share * part):02x}" for part in parts)
+
+
+def contrast(color: str) -> float:
+    """Return a colour's contrast to white, from 1 to 21, as WCAG 2 has it.
+
+    >>> round(contrast("#000000")), round(contrast("#D55E00"), 1)
+    (21, 3.9)
+    """
+    shares = (int(color[k : k + 2], 16) / 255 for k in (1, 3, 5))
+    linear = (share / 12.92 if share <= 0.03928 else ((share + 0.055) / 1.055) ** 2.4 for share in shares)
+    light = sum(weight * part for weight, part in zip((0.2126, 0.7152, 0.0722), linear, strict=True))
+    return 1.05 / (light + 0.05)
+
+
+@cache
+def legible(color: str, least: float) -> str:
+    """Return a colour dark enough for this contrast to white; what is pale on purpose, white, or none stays.
+
+    >>> legible("#E69F00", 3.0), legible("#0072B2", 3.0)
+    ('#c38700', '#0072B2')
+    """
+    if not color.startswith("#") or color in (PALE, "#FFFFFF"):
+        return color
+    share, shown = 1.0, color
+    while contrast(shown) < least:
+        share -= 0.05
+        shown = darker(color, share)
+    return shown
 
 
 KIND_COLORS: dict[Kind, str] = {

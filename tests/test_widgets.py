@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import primkit as pk
-from primkit.palette import KIND_COLORS
+from primkit.palette import KIND_COLORS, PALE, contrast
 from primkit.themed import in_theme
 from primkit.widgets.drawing import (
     ENTRY,
@@ -84,6 +84,19 @@ def test_a_slider_is_quick_enough(name):
 
     slowest = max(slider.corners(), key=seconds)
     assert min(seconds(slowest) for _ in range(5)) <= KEY_TO_PICTURE, slowest
+
+
+@pytest.mark.parametrize("name", SLIDERS)
+def test_letters_and_marks_can_be_read_on_white(name):
+    """4.5 for letters, 3 for what is no area; frames and what is there as ground are pale on purpose."""
+    slider = SLIDERS[name]()
+    for svg in (slider.twin().svg, *([] if name == "boards" else [slider.diagram().svg])):
+        for element in ElementTree.fromstring(svg).iter():
+            letters = element.tag.endswith("text")
+            for kind in ("fill",) if letters else ("fill", "stroke"):
+                color = element.get(kind, "none")
+                if color.startswith("#") and color != PALE and element.get(f"{kind}-opacity") is None:
+                    assert contrast(color) >= (4.5 if letters else 3.0), (element.tag, color)
 
 
 @pytest.mark.parametrize("name", SLIDERS)

@@ -35,7 +35,7 @@ function render({ model, el }) {
     const panel = el.closest(".primkit-panel");
     const handles = panel?.querySelectorAll(".noUi-handle") ?? [];
     if (handles.length < model.get("sliders")) return requestAnimationFrame(attach); // they are not there yet
-    panel.dataset.lmSuppressShortcuts = "true";
+    for (const part of [panel, ...handles]) part.dataset.lmSuppressShortcuts = "true"; // some shortcuts ask the target alone
     panel.querySelectorAll(".widget-hslider").forEach(tell);
     for (const choice of panel.querySelectorAll(".widget-toggle-buttons")) {
       choice.setAttribute("role", "group");

@@ -180,14 +180,16 @@ class Predictions:
         ask = ipywidgets.HTML(f"<b>{escape(question.ask)}</b>")
         guessed: Callable[[Any], None] = partial(_guessed, question.name, said)
         if question.options:
+            wide: dict[str, Any] = {"style": {"button_width": "auto"}, "layout": {"max_width": "calc(100% - 4px)"}}
             options = [option.says for option in question.options]
-            buttons = ipywidgets.ToggleButtons(options=options, value=kept.get("guess"), style={"button_width": "auto"})
+            buttons = ipywidgets.ToggleButtons(options=options, value=kept.get("guess"), **wide)
             buttons.observe(lambda change: guessed(change.new), names="value")
             return ask, buttons, said
         whole = float(question.step).is_integer()
         kind = ipywidgets.IntSlider if whole else ipywidgets.FloatSlider
         ends = {"min": question.low, "max": question.high, "step": question.step}
-        slider = kind(kept.get("guess", question.low), **ends, continuous_update=False, description=question.unit)
+        fits = {"continuous_update": False, "layout": {"max_width": "calc(100% - 4px)"}}
+        slider = kind(kept.get("guess", question.low), description=question.unit, **ends, **fits)
         slider.observe(lambda change: guessed(change.new), names="value")
         return ask, slider, said
 

@@ -33,6 +33,7 @@ from .drawing import sentence, side_by_side, size_of, what_it_says
 Draw = Callable[..., str]
 
 READOUT_WIDTH = 640  # px: three lines of this width hold 250 letters
+READOUT_HEIGHT = "max(66px, 66px + (640px - 100vw) / 4)"  # of three lines; on a phone they are more
 CONTROLS_WIDTH = 425  # px: with a picture of this width beside them they fit into a notebook's column
 
 
@@ -196,7 +197,7 @@ class Explorer:
         width, _ = size_of(svg)
         # Of one size, whatever is drawn: the page below must not jump.
         self._image = ipywidgets.HTML(in_theme(svg), layout=_wide(width))
-        self._readout = ipywidgets.HTML(_spoken(svg), layout=_wide(READOUT_WIDTH) | {"min_height": "66px"})
+        self._readout = ipywidgets.HTML(_spoken(svg), layout=_wide(READOUT_WIDTH) | {"min_height": READOUT_HEIGHT})
         self._knobs = {control.name: control.widget() for control in self.controls}
         self._line_up()
         self._quiet = False

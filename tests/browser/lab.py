@@ -203,11 +203,11 @@ class Lesson:
             self.widen(width)
             for number, panel in enumerate(self.panels, 1):
                 panel.root.screenshot(path=folder / f"{self.name}_{width}_slider_{number}.png")
-            self.widen(width, min(self._to_the_top() + 80, TALLEST))
-            self._to_the_top()
+            self.widen(width, min(self.page_height() + 80, TALLEST))
+            self.page_height()
             self.page.screenshot(path=folder / f"{self.name}_{width}.png")
 
-    def _to_the_top(self) -> int:
+    def page_height(self) -> int:
         """Scroll up; return where the last cell ends then, in px."""
         return self.page.locator(".jp-Notebook .jp-WindowedPanel-outer").evaluate("""(all) => {
             all.scrollTop = 0;
