@@ -159,3 +159,32 @@ def test_where_many_points_lie_beside_it_no_shape_is_certain():
     choice = explained(np.vstack([outline, beside]), LEAST_SPREAD)
     assert choice.shape.kind == "rectangle"
     assert not choice.certain
+
+
+@pytest.fixture
+def beside_each_other():
+    """Points of a rectangle and a triangle 5 mm apart, with sides that face each other; hardly any in the mouth."""
+    rectangle = pk.Polygon([(-0.019, 0.03), (-0.062, 0.116), (-0.131, 0.082), (-0.087, -0.005)])
+    world = pk.World([rectangle, pk.Polygon([(-0.083, 0.111), (-0.25, 0.137), (-0.211, 0.047)])])
+    grid = pk.Grid()
+    grid.add(pk.scan(world, pk.teleport_poses(world)))
+    return grid.points()
+
+
+def test_two_shapes_that_make_one_outline_are_parted_where_it_bends_inwards(beside_each_other, monkeypatch):
+    """K-Means parts by distance alone, and here that is amiss."""
+    assert kinds(regrouped(groups_of(beside_each_other), LEAST_SPREAD)) == ["rectangle", "triangle"]
+    monkeypatch.setattr(regroup, "_joints", lambda _: [])
+    assert kinds(regrouped(groups_of(beside_each_other), LEAST_SPREAD)) == ["polygon"]
+
+
+def test_a_convex_outline_is_not_parted(beside_each_other, monkeypatch):
+    asked = []
+    real = regroup._sides
+    monkeypatch.setattr(regroup, "_sides", lambda *a: asked.append(1) or real(*a))
+    bearings = np.arange(6) * np.pi / 3
+    hexagon = pk.Polygon(0.1 * np.column_stack([np.cos(bearings), np.sin(bearings)]))
+    assert kinds(regrouped(groups_of(hexagon.outline(400)), LEAST_SPREAD)) == ["polygon"]
+    assert asked == []
+    regrouped(groups_of(beside_each_other), LEAST_SPREAD)
+    assert asked

@@ -175,7 +175,7 @@ class Ways:
     def through(cls, points: Floats, spread: float) -> Ways:
         """Return the ways to explain these points."""
         unseen = REACH + SIGMAS * (spread - LEAST_SPREAD)
-        ways = cls(points, spread, best_cuts(points), chords(points, unseen), {}, {})
+        ways = cls(points, spread, best_cuts(points, unseen), chords(points, unseen), {}, {})
         circle, wall = fit_circle(points, "taubin"), fit_line(points)
         if circle is not None:
             ways.least[0, False] = ways.cost(circle, (0, False))

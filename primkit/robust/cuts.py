@@ -101,16 +101,24 @@ def _outward(angle: float, offset: float) -> Line:
     return (angle, offset) if offset >= 0 else (angle + np.pi, -offset)
 
 
-def best_cuts(ordered: Floats) -> dict[int, Cut]:
+def best_cuts(ordered: Floats, unseen: float = REACH) -> dict[int, Cut]:
     """Return the best cut of points in order, shape (N, 2), metres, into one to five pieces, as far as there is one.
 
-    The first cut is where no side runs through: where the points are farthest, which of a polygon is a corner, or an
-    end of what was seen of it. Where exactly between two knots another cut lies, is left open, and the points there
-    belong to no piece: so none is on a wrong one.
+    The first cut is where no side runs through: where the points are farthest, of a polygon that is a corner; or behind
+    a gap wider than ``unseen``, metres. Where exactly between two knots another cut lies, is left open, and the points
+    there belong to no piece: so none is on a wrong one.
     """
-    far = (ordered**2).sum(axis=1)
+    far, gap = (ordered**2).sum(axis=1), _gaps(ordered)
     ring = np.concatenate([far[-1:], far, far[:1]])
-    first = int(np.minimum(far, np.minimum(ring[:-2], ring[2:])).argmax())  # a lone stray is none
+    cuts = _cuts_from(ordered, int(np.minimum(far, np.minimum(ring[:-2], ring[2:])).argmax()))  # a lone stray is none
+    if gap.max() > unseen:
+        for k, cut in _cuts_from(ordered, int(gap.argmax()) + 1).items():
+            cuts[k] = min(cut, cuts.get(k, cut), key=lambda one: one.squares)
+    return cuts
+
+
+def _cuts_from(ordered: Floats, first: int) -> dict[int, Cut]:
+    """Return the best cuts of which the first is there."""
     ordered = np.concatenate([ordered[first:], ordered[:first]])
     n_knots = min(KNOTS, len(ordered))
     knots = np.arange(n_knots + 1) * len(ordered) // n_knots

@@ -192,11 +192,11 @@ MUTANTS = (
         (*CUTS, "test_circles.py"),
     ),
     Mutant(
-        "the first cut where the points are farthest",
+        "the first cut behind the widest gap",
         "robust/cuts.py",
-        "np.minimum(ring[:-2], ring[2:])).argmax())",
-        "np.minimum(ring[:-2], ring[2:])).argmin())",
-        CUTS,
+        "if gap.max() > unseen:",
+        "if False:",
+        ("test_unknown.py",),
     ),
     # --- free ---
     Mutant(
