@@ -171,13 +171,13 @@ def find_shapes(
 def find_again(
     points: Grid | ArrayLike,
     warm: WarmStarts,
-    n_shapes: int | None = None,
+    n_shapes: int | None,
     *,
-    resolution: float | None = None,
-    settings: Settings = ROBUST,
-    steps: Steps | None = None,
-    kinds: Sequence[Kind] | None = None,
-    rng: int | np.random.Generator | None = None,
+    resolution: float | None,
+    settings: Settings,
+    steps: Steps | None,
+    kinds: Sequence[Kind] | None,
+    rng: int | np.random.Generator | None,
 ) -> Found:
     """Find shapes as ``find_shapes`` does, from the warm starts of the last call, which become those of the next.
 

@@ -103,9 +103,11 @@ class Mapper:
         self.n_shapes = None if n_shapes is None else as_count(n_shapes, "n_shapes", least=0)
         generator = as_rng(rng)
         seed = rng if isinstance(rng, (int, np.integer)) else int(generator.integers(2**63))
-        self._find: Callable[..., Found] = partial(find_again, settings=settings, steps=steps, kinds=kinds, rng=seed)
+        self._find: Callable[..., Found] = partial(
+            find_again, resolution=None, settings=settings, steps=steps, kinds=kinds, rng=seed
+        )
         self._warm: WarmStarts = {}
-        self._found = self._find([], self._warm)  # refuses what find_shapes refuses, before anything is driven
+        self._found = self._find([], self._warm, None)  # refuses what find_shapes refuses, before anything is driven
         self._found_in = _told_by(Grid())
 
     def add(self, seen: Scans | ArrayLike) -> None:
@@ -126,7 +128,7 @@ class Mapper:
     def look(self, grid: Grid | MovingGrid) -> Found:
         """Return the shapes in a copy of the grid: for a thread that looks while the robot drives on, one at a time."""
         if self.n_shapes is not None and len(grid) < self.n_shapes:
-            return Found(strays=grid.points())
+            return Found(strays=grid.points(), resolution=grid.resolution)
         return self._find(grid, self._warm, self.n_shapes)
 
     def __repr__(self) -> str:
