@@ -103,11 +103,9 @@ class Mapper:
         self.n_shapes = None if n_shapes is None else as_count(n_shapes, "n_shapes", least=0)
         generator = as_rng(rng)
         seed = rng if isinstance(rng, (int, np.integer)) else int(generator.integers(2**63))
-        self._find: Callable[..., Found] = partial(
-            find_again, resolution=None, settings=settings, steps=steps, kinds=kinds, rng=seed
-        )
+        self._find: Callable[..., Found] = partial(find_again, settings=settings, steps=steps, kinds=kinds, rng=seed)
         self._warm: WarmStarts = {}
-        self._found = self._find([], self._warm, None)  # refuses what find_shapes refuses, before anything is driven
+        self._found = self._find([], self._warm)  # refuses what find_shapes refuses, before anything is driven
         self._found_in = _told_by(Grid())
 
     def add(self, seen: Scans | ArrayLike) -> None:
