@@ -111,7 +111,7 @@ def test_each_cell_is_new_once(world):
 
 def test_the_robot_finds_the_shapes_and_sees_the_board(world):
     state, start = DriveState(world), DriveState(world)
-    wander(state, 330)
+    wander(state, 420)
     assert state.score >= 0.5 > start.score
     assert state.unseen().sum() < start.unseen().sum() / 2
 
