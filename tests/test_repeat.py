@@ -5,7 +5,7 @@ import pytest
 
 import primkit as pk
 from primkit.study import PUBLISHED, Row, Score, agrees, repeat_study, row_table, tables
-from primkit.study.ablation import STEPS, ablation
+from tests.benchmarks.ablation import STEPS, ablation
 
 SUITE = pk.published_suite()
 

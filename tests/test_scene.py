@@ -111,7 +111,7 @@ def test_each_cell_is_new_once(world):
 
 def test_the_robot_finds_the_shapes_and_sees_the_board(world):
     state, start = DriveState(world), DriveState(world)
-    wander(state, 450)
+    wander(state, 420)
     assert state.score >= 0.5 > start.score
     assert state.unseen().sum() < start.unseen().sum() / 2
 
@@ -119,7 +119,7 @@ def test_the_robot_finds_the_shapes_and_sees_the_board(world):
 def test_back_at_the_start_all_is_as_it_was(world):
     noisy = pk.Lidar(noise_std=0.002)
     state, fresh = DriveState(world, noisy, rng=3), DriveState(world, noisy, rng=3)
-    wander(state, 12)
+    wander(state, 5)
     state.undo()
     for _ in range(2):
         np.testing.assert_array_equal(state.pose, fresh.pose)
@@ -133,8 +133,8 @@ def test_back_at_the_start_all_is_as_it_was(world):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no resource module")
 def test_neither_memory_nor_a_step_s_work_grows_with_the_drive():
-    """Five times as long, half as many cells again, while shapes are looked for beside the drive."""
-    (few, before, held, quick), (many, after, still_held, late) = long_drive(0.002, 240, 1200)
+    """Five times as long, a third as many cells again, while shapes are looked for beside the drive."""
+    (few, before, held, quick), (many, after, still_held, late) = long_drive(0.002, 150, 750)
     assert many > 1.3 * few
     assert after <= MOST_MEMORY * before
     assert still_held - held < 900  # what is kept of each scan, however small, would be a block each
@@ -444,8 +444,8 @@ def test_the_page_hears_which_cells_are_gone(world):
     scene = Scene(DriveState(world, moving=True))
     told, cells = [], set(map(tuple, scene.state.grid.cells.tolist()))
     scene.send = lambda content, _=None: told.append(content)
-    for number, held in enumerate(wandering(90)):
-        if number == 45:
+    for number, held in enumerate(wandering(60)):
+        if number == 30:
             scene.answer({"do": "move"})
         scene.answer({"do": "step", "held": held})
     for message in told:
@@ -627,7 +627,7 @@ def test_the_picture_does_not_wait_for_the_shapes(scene):
 
 
 def test_a_new_page_gets_all_that_was_seen(scene):
-    wander(scene.state, 60)
+    wander(scene.state, 25)
     scene.answer({"do": "hello"})
     message = scene.sent[0][0]
     assert message["cells"] == scene.state.grid.cells.tolist()
@@ -653,7 +653,7 @@ def test_a_look_that_a_script_waited_for_is_shown(scene):
 
 def test_a_shape_is_named_when_it_is_found(scene):
     said = []
-    for held in wandering(60):
+    for held in wandering(35):
         scene.answer({"do": "step", "held": held})
         said.append(scene.sent[-1][0].get("say"))
     assert any(words and words.startswith("Found so far: ") for words in said)

@@ -126,7 +126,7 @@ class Mapper:
     def look(self, grid: Grid | MovingGrid) -> Found:
         """Return the shapes in a copy of the grid: for a thread that looks while the robot drives on, one at a time."""
         if self.n_shapes is not None and len(grid) < self.n_shapes:
-            return Found(strays=grid.points())
+            return Found(strays=grid.points(), resolution=grid.resolution)
         return self._find(grid, self._warm, self.n_shapes)
 
     def __repr__(self) -> str:

@@ -11,7 +11,7 @@ Out: a ``Row`` for each map and method; from them a ``Table``, which prints, sho
 >>> [table.title for table in tables(rows)]
 ['Table 2. Several shapes, automatic movement']
 
-``repeat`` repeats the paper's experiments (``ablation``: what each step towards them does), ``published`` puts what
+``repeat`` repeats the paper's experiments, ``published`` puts what
 was recorded beside them, ``seen_table`` counts what a drive saw, ``accuracy/`` changes one thing at a time. Not here:
 the drives (``driving``), the pictures (``plots``).
 

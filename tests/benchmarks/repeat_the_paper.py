@@ -19,7 +19,8 @@ import primkit as pk
 from primkit.paper import published_values
 from primkit.robot import published_poses
 from primkit.study import PUBLISHED, agrees, oracle_fit, repeat_study, told_points
-from primkit.study.ablation import ablation
+
+from .ablation import ablation
 
 THEIRS = pk.Lidar(model="webots")
 PUBLISHED_CODE = {

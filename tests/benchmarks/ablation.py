@@ -21,22 +21,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arguments import Floats
-from ..circles import find_circle
-from ..evaluation import PAPER_TOLERANCE, evaluate
-from ..formats import published_suite
-from ..grid import Grid
-from ..lidar import scan
-from ..lines import find_lines
-from ..paper import kind_by_lines, measure_as_published, published_values
-from ..pipeline import PAPER, find_shapes
-from ..report import CENTER_WEIGHT, DIMENSION_WEIGHT, PAPER_DIGITS, SHAPE_WEIGHT
-from ..robot import published_poses, teleport_poses
-from ..segmentation import kmeans
-from ..shapes import Circle, Polygon, Shape
-from ..table import Table
-from ..world import PENTAGON, World
-from .repeat import THEIRS
+from primkit.arguments import Floats
+from primkit.circles import find_circle
+from primkit.evaluation import PAPER_TOLERANCE, evaluate
+from primkit.formats import published_suite
+from primkit.grid import Grid
+from primkit.lidar import scan
+from primkit.lines import find_lines
+from primkit.paper import kind_by_lines, measure_as_published, published_values
+from primkit.pipeline import PAPER, find_shapes
+from primkit.report import CENTER_WEIGHT, DIMENSION_WEIGHT, PAPER_DIGITS, SHAPE_WEIGHT
+from primkit.robot import published_poses, teleport_poses
+from primkit.segmentation import kmeans
+from primkit.shapes import Circle, Polygon, Shape
+from primkit.study.repeat import THEIRS
+from primkit.table import Table
+from primkit.world import PENTAGON, World
 
 FIRST_REACH = 0.005  # m: of lines and circles in the first edition
 STRICT = FIRST_REACH - 1e-9  # what lies at 5 cells is out, what is nearer is in
