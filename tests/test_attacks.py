@@ -4,15 +4,18 @@ import os
 import re
 import shutil
 import socket
+import subprocess
+import sys
 import threading
 import time
 from contextlib import suppress
+from pathlib import Path
 
 import nbformat
 import psutil
 import pytest
 
-from primkit.course.confining import bubblewrap_works, processes_are_limited
+from primkit.course.confining import OWN_FOLDERS, PACKAGE, bubblewrap_works, processes_are_limited, walls
 from primkit.course.course import new_course
 from primkit.course.handed_in import tree_hash
 from tests.attacks import ALONE, ATTACKS, FORGERIES, forgeries
@@ -49,6 +52,28 @@ PATIENCE = 8  # s for a cell: so long each of those waits that breaks its kernel
 PART_SECONDS = 0.5  # of processor time: a right answer needs some hundredths
 IN_ONE = 18  # attacks in one notebook
 SECRET = "this is PRIVATE"
+
+
+WRITES = """\
+import os
+for folder, _, _ in os.walk("/"):
+    try:
+        with open(os.path.join(folder, "new"), "x"):
+            print(folder)
+    except OSError:
+        pass
+"""
+
+
+def test_behind_the_walls_only_folders_with_a_limit_can_be_written(tmp_path):
+    own = [tmp_path / name for name in OWN_FOLDERS]
+    for folder in own:
+        folder.mkdir()
+    done = subprocess.run([*walls(tmp_path, PACKAGE), sys.executable, "-c", WRITES], capture_output=True, text=True)
+    small = [Path(name) for name in ("/tmp", "/dev/shm")]  # in memory, with a limit of their own
+    others = [folder for folder in map(Path, done.stdout.splitlines()) if folder not in own]
+    assert set(own) <= {*map(Path, done.stdout.splitlines())}
+    assert [folder for folder in others if not any(folder.is_relative_to(place) for place in small)] == []
 
 
 def batches():

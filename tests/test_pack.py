@@ -312,6 +312,24 @@ def test_the_limits_that_are_stated_are_those_of_the_program():
     assert f"{int(megabytes) / 1024:g} GB for each submission" in page
 
 
+def not_only_results(page):
+    """Report what a page brings back from where submissions have run, other than results: T23."""
+    results = {"gradebook.db", "autograded", "feedback", "reports"}
+    copies = re.findall(r"cp -r (.*) course/(?=\n|;)", page)
+    loops = [names.split() for names in re.findall(r"for what in (.*?);.*\$what course/", page)]
+    back = [place.partition("/")[2] or place for copy in copies for place in copy.split() if "$what" not in place]
+    return sorted({name for name in [*back, *(name for loop in loops for name in loop)] if name not in results})
+
+
+def test_t23_only_results_come_back_from_where_submissions_ran():
+    page = PAGES["untrusted_code.md"]
+    assert len(re.findall(r"cp -r .* course/", page)) == 2
+    assert not_only_results(page) == []
+    assert not_only_results(page.replace("graded-copy/reports", "graded-copy/grader")) == ["grader"]
+    assert not_only_results(page.replace("feedback reports;", "feedback source;")) == ["source"]
+    assert not_only_results("cp -r graded-copy course/\n") == ["graded-copy"]
+
+
 # --- the plan of the course ----------------------------------------------------------------------------------
 
 

@@ -11,6 +11,7 @@ import sys
 import time
 import warnings
 from contextlib import chdir, redirect_stderr, redirect_stdout
+from importlib import metadata
 from pathlib import Path
 
 import nbformat
@@ -449,6 +450,18 @@ def test_check_compares_versions(course, tmp_path):
     assert found["nbgrader"].found.endswith(", needs 0.0.1")
     assert found["no-such-package"].found == "missing, needs 1.0"
     assert f"-m pip install -r {pins}" in found["nbgrader"].mend
+
+
+def test_t24_no_remedy_names_a_package_that_is_somebody_else_s(course, tmp_path, monkeypatch):
+    def absent(name):
+        raise metadata.PackageNotFoundError(name)
+
+    monkeypatch.setattr(metadata, "version", absent)
+    found = faults(course, environment=tmp_path / "none.txt")
+    assert {"nbgrader", "jupyterlab", "psutil"} <= {*found}
+    for finding in found.values():
+        assert not re.search(r"install .*\bprimkit\b", finding.mend), finding
+    assert found["nbgrader"].mend.endswith("-m pip install nbgrader jupyterlab ipykernel nbconvert psutil")
 
 
 def test_check_ends_with_1_where_something_is_wrong(course, capsys):

@@ -6,11 +6,10 @@ Out: a ``Finding`` for each thing that was looked at: fine, or what is wrong and
 
 from __future__ import annotations
 
-import json
+import ast
 import os
 import re
 import sqlite3
-import subprocess
 import sys
 import sysconfig
 import tempfile
@@ -18,16 +17,20 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 from .confining import UNPROTECTED, confined_by
 from .course import CONFIG, COPIED_FOLDERS, SETTINGS, STUDENTS, Course
+from .grading.judging import hidden_tests_of
 from .handed_in import strangers
 from .moved import old_names
+from .notebooks import marked, read_notebook, text_of
 from .students import SAVE_AS, read_students
 
 LEAST_PYTHON = (3, 11)
 ENVIRONMENT = Path(__file__).resolve().parents[2] / "notebooks" / "teacher" / "environment.txt"  # in a clone
 REQUIRED_PACKAGES = ("nbgrader", "jupyterlab", "ipykernel", "nbconvert", "psutil")
+MARK = re.compile(r"^([\w.]+)\.mark\(", re.MULTILINE)  # of a task, in a hidden test
 PIN = re.compile(r"^([\w.-]+)(?:\[[\w,]+\])?==([\w.]+)")
 
 
@@ -47,7 +50,7 @@ class Finding:
 
 def check(course: Course, environment: Path = ENVIRONMENT) -> list[Finding]:
     """Look at everything that a course needs."""
-    installed = *_python(), *_packages(environment), *_commands(), *_kernel(), _walls()
+    installed = *_python(), *_packages(environment), *_commands(), *_kernel()
     moved = (Finding(old.file, f"names {old.name}, which has moved", old.mend) for old in old_names(course))
     looked_at = *_folder(course), *_sources(course), *moved, *_points(course), *_settings(course), *_secrets(course)
     return [*installed, _walls(), *looked_at, *_gradebook(course)]
@@ -153,49 +156,37 @@ def _sources(course: Course) -> Iterator[Finding]:
         yield Finding("problem sets", ", ".join(sets) or "none", "copy them into source/", bool(sets))
 
 
-# Run apart, as the teacher's own tests are: for each hidden test its place, its cell's points and those that it gives.
-COUNT_POINTS = """\
-import ast, json, re, sys
-from pathlib import Path
-for path in sorted(Path("source").glob("*/*.ipynb")):
-    for cell in json.loads(path.read_text("utf-8"))["cells"]:
-        about, source = cell["metadata"].get("nbgrader", {}), "".join(cell["source"])
-        task = re.search(r"^([\\w.]+)\\.mark\\(", source, re.MULTILINE)
-        if not (about.get("grade") and task):
-            continue
-        scope = {}
-        try:
-            body = [node for node in ast.parse(source).body if isinstance(node, (ast.Import, ast.ImportFrom))]
-            exec(compile(ast.Module(body, []), "imports", "exec"), scope)
-            gives = float(eval(task[1], scope).points)
-        except Exception as error:
-            gives = f"{type(error).__name__}: {error}"
-        print(json.dumps([f"source/{path.parent.name}, {about['grade_id']}", about.get("points"), gives]))
-"""
-
-
 def _points(course: Course) -> Iterator[Finding]:
     """Compare the points of hidden cells with those that their tests give."""
     if not all((course.root / name).is_dir() for name in COPIED_FOLDERS):
         return
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, (str(course.root), *sys.path)))}
-    done = subprocess.run(
-        [sys.executable, "-c", COUNT_POINTS],
-        cwd=course.root,
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=600,
-    )
-    lines = [json.loads(line) for line in done.stdout.splitlines()]
-    for place, cell, gives in lines:
+    with hidden_tests_of(course.root):
+        found = list(_points_of(course))
+    for place, cell, gives in found:
         if gives != cell:
-            found = f"the cell has {cell} points, its hidden tests give {gives}"
-            yield Finding(place, found, "let the parts in grader/ sum up to the cell's points, or change the cell's")
-    if done.returncode:
-        yield Finding("grader/", done.stderr.strip().rpartition("\n")[2], "mend it: the hidden tests cannot be read")
-    elif all(gives == cell for _, cell, gives in lines):
-        yield Finding("points", f"{len(lines)} hidden tests give what their cells say", fine=True)
+            told = f"the cell has {cell} points, its hidden tests give {gives}"
+            yield Finding(place, told, "let the parts in grader/ sum up to the cell's points, or change the cell's")
+    if all(gives == cell for _, cell, gives in found):
+        yield Finding("points", f"{len(found)} hidden tests give what their cells say", fine=True)
+
+
+def _points_of(course: Course) -> Iterator[tuple[str, float, float | str]]:
+    """Yield for each hidden test its place, its cell's points and those that it gives, or an error instead."""
+    for path in sorted((course.root / "source").glob("*/*.ipynb")):
+        for mark, cell in marked(read_notebook(path)):
+            about, source = cell["metadata"]["nbgrader"], text_of(cell)
+            task = MARK.search(source)
+            if about.get("grade") and task:
+                gives: float | str
+                try:
+                    scope: dict[str, Any] = {}
+                    tree = ast.parse(source)
+                    tree.body = [each for each in tree.body if isinstance(each, (ast.Import, ast.ImportFrom))]
+                    exec(compile(tree, mark, "exec"), scope)
+                    gives = float(eval(task[1], scope).points)
+                except Exception as error:
+                    gives = f"{type(error).__name__}: {error}"
+                yield f"source/{path.parent.name}, {mark}", about.get("points"), gives
 
 
 def _settings(course: Course) -> Iterator[Finding]:

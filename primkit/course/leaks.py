@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import ast
 import base64
-import binascii
 import builtins
 import html
 import io
@@ -22,12 +21,14 @@ import keyword
 import re
 import zipfile
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from ..formats.files import naming, open_archive, unpacked
 from .course import SALT
+from .notebooks import text_of
 
 MOST_UNPACKED = 2**28  # bytes of one file in an archive
 PIECE_TOKENS = 16  # about a line
@@ -78,7 +79,7 @@ def secrets_of(folder: Path) -> Secrets:
     secrets, public = Secrets(), set[Piece]()
     for path in sorted((folder / "source").rglob("*.ipynb")):
         for cell in _cells(path):
-            shown, hidden = _split(_join(cell.get("source", "")))
+            shown, hidden = _split(text_of(cell))
             public.update(pieces(shown))
             for part in hidden:
                 name = cell.get("metadata", {}).get("nbgrader", {}).get("grade_id", "a cell")
@@ -227,48 +228,28 @@ def _of_file(name: str, data: bytes) -> Iterator[tuple[str, str, str]]:
     yield name, "text", html.unescape(text) if name.endswith((".html", ".svg")) else text
 
 
-def _of_notebook(nb: Any) -> Iterator[tuple[str, str]]:
-    """Yield the places of a notebook and their texts."""
-    yield from _strings("the notebook's metadata", nb.get("metadata", {}))
-    for number, cell in enumerate(nb["cells"], 1):
-        yield f"cell {number}", _join(cell.get("source", ""))
-        yield from _strings(f"cell {number}, metadata", cell.get("metadata", {}))
-        for bundle in (cell.get("attachments") or {}).values():
-            yield from ((f"cell {number}, attachment", _decode(data)) for data in bundle.values())
-        for output in cell.get("outputs") or ():
-            for kind, data in (output.get("data") or {}).items():
-                if kind not in PICTURE_TYPES:
-                    text = html.unescape(_join(data)) if isinstance(data, (str, list)) else json.dumps(data)
-                    yield f"cell {number}, output", text
-            yield from _strings(f"cell {number}, output", {k: v for k, v in output.items() if k != "data"})
+def _of_notebook(notebook: Any) -> Iterator[tuple[str, str]]:
+    """Yield the places of a notebook and all texts there, in whatever they lie."""
+    for text in _strings(notebook.get("metadata", {})):
+        yield "the notebook's metadata", text
+    for number, cell in enumerate(notebook["cells"], 1):
+        for text in _strings(cell):
+            yield f"cell {number}", text
 
 
-def _strings(place: str, value: Any) -> Iterator[tuple[str, str]]:
-    """Yield every text in nested values; a list of texts is also read as lines."""
+def _strings(value: Any) -> Iterator[str]:
+    """Yield every text in nested values, in HTML and base64, too; a list of texts is read as one."""
+    if isinstance(value, list) and value and all(isinstance(line, str) for line in value):
+        value = ("" if value[0].endswith("\n") else "\n").join(value)
     if isinstance(value, str):
-        yield place, value
-    elif isinstance(value, dict):
-        for name, inner in value.items():
-            yield from _strings(place, name)
-            yield from _strings(place, inner)
-    elif isinstance(value, list):
-        if value and all(isinstance(line, str) for line in value):
-            yield place, "\n".join(line.rstrip("\n") for line in value)
-        else:
-            for inner in value:
-                yield from _strings(place, inner)
-
-
-def _decode(data: Any) -> str:
-    text = _join(data)
-    try:
-        return base64.b64decode(text, validate=True).decode("utf-8", "replace")
-    except (binascii.Error, ValueError):
-        return text
-
-
-def _join(source: Any) -> str:
-    return "".join(source) if isinstance(source, list) else str(source)
+        yield html.unescape(value)
+        with suppress(ValueError):
+            yield base64.b64decode(value, validate=True).decode("utf-8", "replace")
+        return
+    if isinstance(value, dict):
+        value = [*value, *(inner for kind, inner in value.items() if kind not in PICTURE_TYPES)]
+    for inner in value if isinstance(value, list) else ():
+        yield from _strings(inner)
 
 
 def _cells(path: Path) -> list[dict[str, Any]]:
