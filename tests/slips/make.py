@@ -7,6 +7,7 @@ A slip changes one place. There are six classes: comparison, sign, axis, order, 
 slip of each class that has a place in its answer; where a class has none, the others have more. Which place is taken
 follows from a hash, and so does the half that a slip belongs to: ``open``, to look at while hints are written, or
 ``held out``. A slip that changes nothing that is asked for is taken out by hand in ``EQUIVALENT``, with the reason.
+``fresh`` makes others by another seed, for a figure that nothing was tuned on.
 
     python -m tests.slips.make    # writes slips.json anew
 """
@@ -196,7 +197,13 @@ def rank(*words):
     return sha256(" ".join(map(str, words)).encode()).hexdigest()
 
 
-def mutants():
+def fresh(seed, each):
+    """Return so many slips of each task by another seed, none of which is in the list."""
+    known = {slip["code"] for slip in mutants()}
+    return [slip for slip in mutants(seed, each) if slip["code"] not in known]
+
+
+def mutants(seed="", each=EACH):
     """Return the slips of all tasks: dictionaries with task, name, class, before, after, half and code."""
     found = []
     for task, source in answers().items():
@@ -205,11 +212,11 @@ def mutants():
             if code != source and all(code != other[2] for other in by_class[kind]):
                 by_class[kind].append((before, after, code))
         for kind in CLASSES:
-            by_class[kind].sort(key=lambda each, kind=kind: rank(task, kind, each[2]))
+            by_class[kind].sort(key=lambda slip, kind=kind: rank(*filter(None, (seed, task, kind, slip[2]))))
         taken = []
-        for turn in range(EACH):
-            for kind in CLASSES:
-                if turn < len(by_class[kind]) and len(taken) < EACH:
+        for turn in range(each):
+            for kind in CLASSES if not seed else sorted(CLASSES, key=lambda kind: rank(seed, task, kind)):
+                if turn < len(by_class[kind]) and len(taken) < each:
                     before, after, code = by_class[kind][turn]
                     name = f"{task}, {kind} {turn + 1}"
                     half = "held out" if int(rank("half", name), 16) % 2 else "open"

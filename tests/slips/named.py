@@ -5,8 +5,13 @@ In:  a half of the slips, and whether the check may read the student's code; whe
 Out: for each slip "named", "missed" or "right".
 
     python -m tests.slips.named [open | "held out"] [unread]
+    python -m tests.slips.named fresh SEED [unread]
+
+Of fresh slips none is taken out by hand: one that passes is run beside the right answer on many inputs, and counts as
+equivalent only where both return the same on all of them.
 """
 
+import copy
 import importlib
 import itertools
 import linecache
@@ -19,8 +24,11 @@ import numpy as np
 
 import primkit as pk
 
-from .make import CLASSES, EQUIVALENT, mutants
+from primkit.checks.calls import Raised, run
 
+from .make import CLASSES, EQUIVALENT, answers, fresh, mutants
+
+FRESH_EACH = 2  # of a task
 GRADERS = Path(__file__).parents[2] / "notebooks" / "assignments"
 
 
@@ -57,8 +65,51 @@ def verdict(slip, checks, *, unread=False):
     return ("named" if slip["class"] in re.sub(r"`[^`]*`", "", says) else "missed"), says
 
 
+def same_on(slip, checks, seeds=range(5)):
+    """Return (on how many inputs a slip and the right answer return the same, of how many); errors are results, too."""
+    source, counts = answers()[slip["task"]], Counter()
+    right = built({**slip, "code": source, "name": f"{slip['name']}, right"})
+    wrong = built(slip)
+    for check, seed in itertools.product(checks[slip["task"]], seeds):
+        for args in check.cases(np.random.default_rng(seed)):
+            one, other = (run(each, copy.deepcopy(args), 5.0).got for each in (right, wrong))
+            counts[alike(one, other)] += 1
+    return counts[True], counts.total()
+
+
+def alike(one, other):
+    """Tell whether two results are the same, up to rounding."""
+    if isinstance(one, (tuple, list)) and isinstance(other, (tuple, list)):
+        return len(one) == len(other) and all(map(alike, one, other))
+    if isinstance(one, Raised) or isinstance(other, Raised):
+        return getattr(one, "kind", one) == getattr(other, "kind", other)
+    try:
+        return bool(np.allclose(one, other, rtol=1e-9, atol=1e-12, equal_nan=True))
+    except (TypeError, ValueError):
+        return one == other
+
+
+def fresh_ones(seed, *flags):
+    """Print how many fresh slips of each task are named, and what those are that pass."""
+    of, counts = checks(), Counter()
+    for slip in fresh(seed, FRESH_EACH):
+        word, says = verdict(slip, of, unread="unread" in flags)
+        if word == "right":
+            same, inputs = same_on(slip, of)
+            word = "equivalent" if same == inputs else "passes"
+            says = f"the same as the right answer on {same} of {inputs} inputs"
+        counts[word] += 1
+        if word != "named":
+            print(f"{word}: {slip['name']}: {slip['before']} -> {slip['after']}\n    {says}", flush=True)
+    asked = counts.total() - counts["equivalent"]
+    print(f"{counts.total()} fresh slips, seed {seed}: {dict(counts)}")
+    print(f"{counts['named']} of {asked} named ({counts['named'] / asked:.0%}) without the equivalent ones")
+
+
 def main(half="open", *flags):
     """Print what was not named, and how many were."""
+    if half == "fresh":
+        return fresh_ones(*flags)
     of, counts = checks(), Counter()
     for slip in mutants():
         if slip["half"] == half and slip["name"] not in EQUIVALENT:
