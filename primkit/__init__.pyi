@@ -6,7 +6,7 @@ __version__: str
 from .shapes import Circle as Circle, Polygon as Polygon
 from .world import World as World, random_world as random_world
 from .robot import teleport_poses as teleport_poses, skipped_waypoints as skipped_waypoints, drive as drive
-from .robot import published_poses as published_poses
+from .robot import published_poses as published_poses, odometry as odometry
 from .raycast import cast_rays as cast_rays
 from .sensors import Lidar as Lidar, RPLIDAR_A1 as RPLIDAR_A1, LDS_01 as LDS_01
 from .lidar import Scans as Scans, scan as scan, scan_blocks as scan_blocks
@@ -25,6 +25,8 @@ from .evaluation import evaluate as evaluate, match as match
 from .report import Report as Report
 
 from .driving.mapper import Mapper as Mapper
+
+from .driving.align import align as align, Alignment as Alignment
 from .driving import explore as explore, Exploration as Exploration
 from .driving.scripted import scripted_route as scripted_route
 from .formats import load_world as load_world, save_world as save_world

@@ -27,7 +27,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arguments import Bools, Floats, as_point, as_points, as_poses, as_positive, check_type, limit, short
+from .arguments import (
+    Bools,
+    Floats,
+    as_point,
+    as_points,
+    as_poses,
+    as_positive,
+    as_rng,
+    as_share,
+    check_type,
+    limit,
+    short,
+)
 from .world import World, scale_of
 
 STEP_X = 0.15  # m between way-points along x
@@ -200,6 +212,55 @@ def drive(world: World, wheels: ArrayLike, start: ArrayLike | None = None, *, pe
     for speeds in speeds_of_all:
         poses.append(advance(world, poses[-1], speeds, period)[0])
     return np.array(poses)
+
+
+def odometry(
+    poses: ArrayLike, *, slip: float = 0.03, turn: float = 1.0, rng: int | np.random.Generator | None = None
+) -> Floats:
+    """Return the poses that a robot believes to have, which counts its wheels' turns, shape (P, 3).
+
+    The first one is right. From there on the wheels slip: over a way of one metre, the way that is told is off by
+    ``slip`` metres (standard deviation), and the heading by ``turn`` degrees. One half of either variance lasts for the
+    whole drive, as of wheels that are not quite as large as they should be; the other half is drawn for each step.
+
+    Raises ValueError if poses are not finite (P, 3), slip is not a share, or turn is negative.
+
+    >>> way = [(x, 0, 0) for x in range(4)]
+    >>> odometry(way, slip=0.03, turn=0, rng=0)[:, 0].round(3).tolist()
+    [0.0, 1.016, 2.008, 3.038]
+    """
+    true, rng = as_poses(poses), as_rng(rng)
+    if len(true) == 0:
+        return true
+    slip, turn = as_share(slip, "slip"), np.radians(as_positive(turn, "turn", zero=True))
+    steps = increments(true)
+    way = np.hypot(*steps[:, :2].T)
+    lasting, new = rng.normal(size=2), rng.normal(size=(len(steps), 2))
+    off = np.sqrt(0.5) * (way[:, None] * lasting + np.sqrt(way)[:, None] * new)
+    along = np.divide(steps[:, :2], way[:, None], out=np.zeros((len(steps), 2)), where=way[:, None] > 0)
+    steps[:, :2] += slip * off[:, :1] * along
+    steps[:, 2] += turn * off[:, 1]
+    return chained(true[:1], steps)
+
+
+def increments(poses: Floats) -> Floats:
+    """Return the steps from each pose to the next, as seen from it: forward, to the left [m], turn [rad], (P - 1, 3).
+
+    >>> increments(np.array([(0, 0, np.pi / 2), (0, 2, np.pi)])).round(3).tolist()
+    [[2.0, 0.0, 1.571]]
+    """
+    (x, y, turn), heading = np.diff(poses, axis=0).T, poses[:-1, 2]
+    c, s = np.cos(heading), np.sin(heading)
+    return np.column_stack([c * x + s * y, c * y - s * x, turn])
+
+
+def chained(start: Floats, steps: Floats) -> Floats:
+    """Return the poses to which steps lead, one after the other, shape (P, 3): the inverse of ``increments``."""
+    heading = start[:, 2] + np.concatenate([[0.0], np.cumsum(steps[:, 2])])
+    c, s = np.cos(heading[:-1]), np.sin(heading[:-1])
+    x, y = steps[:, 0], steps[:, 1]
+    ways = np.column_stack([c * x - s * y, s * x + c * y])
+    return np.column_stack([np.concatenate([start[:, :2], start[:, :2] + np.cumsum(ways, axis=0)]), heading])
 
 
 def start_pose(world: World) -> Floats:

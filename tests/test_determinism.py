@@ -70,6 +70,7 @@ results = {
     "drive_scene": [scene.grid.points(), scene.found],
     "replay": [film.cells, *(look.found for look in film.looks)],
     "Mapper": mapper.found,
+    "odometry": pk.odometry(scans.poses, rng=15),
     "find_shapes": [pk.find_shapes(points, rng=9), pk.find_shapes(points, 3, settings=few, rng=9)],
 }
 for name, value in results.items():
