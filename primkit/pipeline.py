@@ -290,9 +290,9 @@ def _jointly(
     if settings.second_opinion if n_shapes is None else len(groups) != n_shapes:
         groups, margins = regrouped(groups, spread, explain=opinion)
     if n_shapes is not None:
-        walls = walls_among([group.choice for group in groups], n_shapes)
-        shapes = [group for group in groups if group.choice not in walls]
-        rest = [group for group in groups if group.choice in walls]
+        walls = walls_among(groups, n_shapes)
+        shapes = [group for group in groups if group not in walls]
+        rest = [group for group in groups if group in walls]
         groups, margins = regrouped(shapes, spread, n_shapes, explain=opinion)
         groups, margins = groups + rest, margins + [float("inf")] * len(rest)
     warm.clear()  # what was not used now will not come again: a map only grows
