@@ -303,11 +303,15 @@ def _explains(points: Floats, best: Candidate, spread: float) -> bool:
 
 
 def polished(points: Floats, rough: Candidate, spread: float, *, soft: bool = True) -> Candidate | None:
-    """Return a candidate near its solution fitted to the last digit, and judged; None for a circle that is none."""
+    """Return a candidate near its solution fitted to the last digit, and judged; None of too short an arc."""
     figure, square = rough.figure, rough.square
     if isinstance(figure, Circle):
         circle = _polished_circle(points, figure, spread)
-        return None if circle is None else _unless_short(judged(points, circle, spread), circle)
+        if circle is None:
+            return None
+        found = judged(points, circle, spread)
+        ends = 2 * REACH if found.length < circle.perimeter * (1 - 1e-9) else 0.0  # an arc looks longer by this
+        return found if (found.length - ends) / circle.radius >= LEAST_ARC else None
     if isinstance(figure, Outlines) and figure.sound()[0]:  # a free outline is as good as it gets
         if soft:
             fit = refine_soft(points, figure, spread, square=square)
@@ -315,12 +319,6 @@ def polished(points: Floats, rough: Candidate, spread: float, *, soft: bool = Tr
             fit = refine_hard(points, figure, SIGMAS * spread, square=square)
         figure = fit if fit.sound()[0] else figure
     return judged(points, figure, spread, square=square)
-
-
-def _unless_short(candidate: Candidate, circle: Circle) -> Candidate | None:
-    """Return the candidate, or None when too short an arc of its circle was seen to tell the radius."""
-    ends = 2 * REACH if candidate.length < circle.perimeter * (1 - 1e-9) else 0.0  # an arc looks longer by this
-    return candidate if (candidate.length - ends) / circle.radius >= LEAST_ARC else None
 
 
 def _polished_circle(points: Floats, circle: Circle, spread: float) -> Circle | None:

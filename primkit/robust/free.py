@@ -85,7 +85,7 @@ def _pruned(points: Floats, outline: Outlines, spread: float, least: float) -> O
     cost = judged(points, outline, spread).cost
     while outline.angles.shape[1] > 3:
         begin, end = outline.spans()
-        turn = np.abs(np.mod(np.roll(outline.angles[0], -1) - outline.angles[0] + np.pi, 2 * np.pi) - np.pi)
+        turn = np.abs(outline.turns()[0])
         doubtful = ((end - begin)[0] < SHORT * least) | (turn < FLAT_TURN) | (np.roll(turn, 1) < FLAT_TURN)
         for side in np.flatnonzero(doubtful):
             fewer = Outlines(np.delete(outline.angles, side, axis=1), np.delete(outline.offsets, side, axis=1))

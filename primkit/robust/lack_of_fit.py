@@ -91,9 +91,8 @@ def sharpness(points: Floats, figure: Outlines, spread: float) -> float:
     numbers. What bends everywhere, such as an ellipse, can be cut into straight pieces, but has no corners.
     """
     corners, lengths = figure.corners()[0], np.subtract(*figure.spans()[::-1])[0]
-    gains = []
-    for i, (corner, angle) in enumerate(zip(corners, figure.angles[0], strict=True)):
-        turn = np.mod(angle - figure.angles[0, i - 1] + np.pi, 2 * np.pi) - np.pi
+    turns, gains = np.roll(figure.turns()[0], 1), []
+    for i, (corner, angle, turn) in enumerate(zip(corners, figure.angles[0], turns, strict=True)):
         middle, reach = angle - turn / 2, min(lengths[i - 1], lengths[i]) / 2 * np.cos(turn / 2)
         y, x = ((points - corner) @ [(np.cos(middle), -np.sin(middle)), (np.sin(middle), np.cos(middle))]).T
         near = (np.abs(x) <= reach) & (np.abs(y + np.abs(x) * np.tan(turn / 2)) <= SIGMAS * spread / np.cos(turn / 2))

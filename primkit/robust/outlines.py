@@ -115,6 +115,10 @@ class Outlines:
         plank = turn.shape[1] == 4 and (np.abs(turn - np.pi / 2) <= NEARLY_RIGHT).all(axis=1, keepdims=True)
         return once_round & bends & (end - begin >= np.where(plank, LEAST_PLANK, LEAST_SIDE)).all(axis=1)
 
+    def turns(self) -> Floats:
+        """Return by how much each side turns to the left into the next, shape (C, K), radians."""
+        return np.mod(_after(self.angles) - self.angles + np.pi, 2 * np.pi) - np.pi
+
     def closes(self, least: float) -> NDArray[np.bool_]:
         """Tell which outlines run round once and cross themselves nowhere, with bends, and no side below ``least`` [m].
 
@@ -122,8 +126,7 @@ class Outlines:
         """
         import shapely
 
-        turn = np.mod(_after(self.angles) - self.angles + np.pi, 2 * np.pi) - np.pi
-        begin, end = self.spans()
+        turn, (begin, end) = self.turns(), self.spans()
         once_round = np.abs(turn.sum(axis=1) - 2 * np.pi) < 1e-6
         bends = ((np.abs(turn) >= LEAST_BEND) & (np.abs(turn) <= MOST_BEND)).all(axis=1)
         closed = once_round & bends & (end - begin >= least).all(axis=1)

@@ -219,13 +219,10 @@ def _joints(outline: Outlines) -> list[tuple[float, float]]:
     One of them at least is a corner that bends inwards, and cut there, the outline leaves the least of such corners.
     """
     corners, places = outline.corners()[0], np.cumsum(np.append(0.0, np.subtract(*outline.spans()[::-1])[0]))
-    inwards = np.flatnonzero(_turns(corners) < 0).tolist()
-    left = {}
+    inwards, left = _turns(corners) < 0, {}
     for i, j in combinations(range(len(corners)), 2):
-        if i not in inwards and j not in inwards:
-            continue
         one, other = corners[i : j + 1], np.concatenate([corners[j:], corners[: i + 1]])
-        if len(one) > 2 and len(other) > 2:
+        if (inwards[i] or inwards[j]) and min(len(one), len(other)) > 2:
             left[places[i], places[j]] = sum(-np.minimum(_turns(part), 0.0).sum() for part in (one, other))
     return sorted(left, key=lambda ends: left[ends])[:MOST_JOINTS]
 

@@ -37,9 +37,8 @@ CELL_STD = CELL / 12**0.5  # m: a cell's centre lies evenly within half a cell o
 LEAST_SPREAD = 1.33 * CELL_STD
 
 SIGMAS = 3.0  # a point within three standard deviations may belong to a shape
-# Share of returns that come from nowhere, and the area [m^2] over which those near a shape are spread.
-GHOSTS, GHOST_AREA = 0.02, 0.05
-NOWHERE = GHOSTS / GHOST_AREA  # their density
+GHOSTS = 0.02  # share of returns that come from nowhere
+NOWHERE = GHOSTS / 0.05  # their density near a shape, over which so many square metres of them are spread
 # Length [m] over which the others are spread. One length for all outlines: were it each outline's own, points seen on
 # a half of a circle would speak for whatever shape closes that half on the shortest way.
 OUTLINE_LENGTH = 0.5
@@ -48,9 +47,8 @@ DEEP_CELLS, DEEP_NOISE = 1.25, 5.0  # inside: farther than cells and noise, time
 NEIGHBOURS = 10  # enough for a line with its spread, few enough for a curve to be straight
 ENOUGH_PLACES = 250  # they tell whether there is any noise
 
-U = 0.5 + np.array([-1.0, 0.0, 1.0]) * 0.15**0.5  # the quadrature's places between 0 and 1, and their shares
+ACROSS = 1 - (0.5 + np.array([-1.0, 0.0, 1.0]) * 0.15**0.5) ** 2  # c^2 at the quadrature's three u, and their shares
 SHARES = np.array([5.0, 8.0, 5.0]) / 18
-ACROSS = 1 - U**2  # c^2
 MEAN_ACROSS = 2 / 3
 # The standard deviation of such a mixture, over its median distance from 0; of a single bell curve it is 1.4826.
 STD_OF_MEDIAN = 1.651

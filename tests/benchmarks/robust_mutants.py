@@ -187,8 +187,8 @@ MUTANTS = (
     Mutant(
         "an arc looks longer by what is near its ends",
         "robust/candidates.py",
-        "(candidate.length - ends) / circle.radius",
-        "candidate.length / circle.radius",
+        "(found.length - ends) / circle.radius",
+        "found.length / circle.radius",
         (*CUTS, "test_circles.py"),
     ),
     Mutant(
