@@ -34,9 +34,9 @@ import numpy as np
 from .arguments import Bools, Floats, Labels, as_count, as_points, as_rng
 from .circles import find_circle
 from .lines import Line
+from .random_shapes import PENTAGON
 from .ransac import draw_samples
 from .shapes import Circle, Kind, Polygon, Shape
-from .world import PENTAGON
 
 ON_LINE = 5.0  # cells
 ON_CIRCLE = 0.05  # cells

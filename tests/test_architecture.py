@@ -24,7 +24,20 @@ PACKAGE = ROOT / "primkit"
 # that find_shapes returns; ``rest`` what a report tells of all in it that is no shape.
 ORDER = (
     *("arguments", "own_code", "table", "themed"),
-    *("shapes", "palette", "show", "world", "robot", "raycast", "faults", "rendered", "sensors", "lidar", "grid"),
+    *(
+        "shapes",
+        "random_shapes",
+        "palette",
+        "show",
+        "world",
+        "robot",
+        "raycast",
+        "faults",
+        "rendered",
+        "sensors",
+        "lidar",
+        "grid",
+    ),
     *("segmentation", "ransac", "lines", "circles", "seen"),
     *("robust", "measure", "found", "account", "paper", "steps", "pipeline", "rest", "report", "evaluation"),
     *("formats", "driving", "study", "plots", "widgets", "scene", "checks", "course"),

@@ -13,9 +13,10 @@ from primkit import report
 from primkit.evaluation import evaluate, match
 from primkit.formats import published_suite, recorded_rows
 from primkit.measure import Detection
+from primkit.random_shapes import PENTAGON
 from primkit.report import REPORT_HEADER, Match, Report
 from primkit.shapes import Circle, Polygon
-from primkit.world import PENTAGON, World, random_world
+from primkit.world import World, random_world
 from tests.helpers import exactly
 
 NAN, INF = float("nan"), float("inf")

@@ -23,13 +23,14 @@ from scipy import stats
 from primkit import lidar as lidar_module
 from primkit.grid import Grid
 from primkit.lidar import Lidar, Scans, scan, scan_blocks
+from primkit.random_shapes import SORTS, free_shape
 from primkit.raycast import cast_plainly, cast_rays
 from primkit.raycast.fan import CORNER_HIT, Fan
 from primkit.raycast.fast import BEAMS_PER_BLOCK, PAIRS_PER_BLOCK
 from primkit.raycast.near import CELLS_FROM, Near
 from primkit.robot import inside_shape, teleport_poses
 from primkit.shapes import PRIMITIVES, Circle, Polygon
-from primkit.world import SORTS, World, free_shape, random_world
+from primkit.world import World, random_world
 from tests.helpers import exactly
 from tests.test_shapes import anything
 

@@ -15,9 +15,10 @@ from primkit.grid import Grid
 from primkit.lidar import Lidar, scan
 from primkit.paper import kind_by_lines, measure_as_published, published_values, shape_as_published
 from primkit.pipeline import PAPER, Settings, find_shapes
+from primkit.random_shapes import PENTAGON
 from primkit.robot import teleport_poses
 from primkit.shapes import Circle, Polygon
-from primkit.world import PENTAGON, World, random_world
+from primkit.world import World, random_world
 from tests.helpers import exactly
 
 NAN, INF = float("nan"), float("inf")

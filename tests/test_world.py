@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 import shapely
 
+from primkit.random_shapes import SORTS
 from primkit.shapes import PRIMITIVES, Circle, Polygon
-from primkit.world import SORTS, World, gap_between, random_world
+from primkit.world import World, gap_between, random_world
 from tests.helpers import exactly
 
 NAN, INF = float("nan"), float("inf")

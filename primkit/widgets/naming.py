@@ -19,12 +19,13 @@ from ..circles import fit_circle
 from ..grid import Grid
 from ..lidar import Lidar, scan
 from ..palette import BLUE, GREY, INK, KIND_COLORS, ORANGE, PALE, VERMILION
+from ..random_shapes import PENTAGON
 from ..robust.outlines import Outlines, from_angle_order, joined
 from ..robust.refine import refine_hard
 from ..robust.scatter import spread_across
 from ..seen import is_seen, seen_shares
 from ..shapes import Circle, Kind, Polygon, Shape
-from ..world import PENTAGON, World
+from ..world import World
 from .drawing import Frame, picture
 from .slider import Choice, Explorer, Picture, Slider, explore
 

@@ -30,13 +30,14 @@ from primkit.lidar import scan
 from primkit.lines import find_lines
 from primkit.paper import kind_by_lines, measure_as_published, published_values
 from primkit.pipeline import PAPER, find_shapes
+from primkit.random_shapes import PENTAGON
 from primkit.report import CENTER_WEIGHT, DIMENSION_WEIGHT, PAPER_DIGITS, SHAPE_WEIGHT
 from primkit.robot import published_poses, teleport_poses
 from primkit.segmentation import kmeans
 from primkit.shapes import Circle, Polygon, Shape
 from primkit.study.repeat import THEIRS
 from primkit.table import Table
-from primkit.world import PENTAGON, World
+from primkit.world import World
 
 FIRST_REACH = 0.005  # m: of lines and circles in the first edition
 STRICT = FIRST_REACH - 1e-9  # what lies at 5 cells is out, what is nearer is in

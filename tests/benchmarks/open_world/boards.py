@@ -12,8 +12,9 @@ from __future__ import annotations
 import numpy as np
 
 import primkit as pk
+from primkit.random_shapes import free_shape
 from primkit.shapes import PRIMITIVES, Polygon, Shape
-from primkit.world import EDGE_MARGIN, free_shape, gap_between
+from primkit.world import EDGE_MARGIN, gap_between
 
 Floats = np.ndarray
 Rng = np.random.Generator

@@ -17,7 +17,7 @@ import numpy as np
 import shapely
 
 import primkit as pk
-from primkit.world import free_shape
+from primkit.random_shapes import free_shape
 
 Floats = np.ndarray
 Rng = np.random.Generator
