@@ -100,13 +100,15 @@ def line_of(error: BaseException) -> Line | None:
     if steps:
         return line_at(steps[-1][0].f_code.co_filename, steps[-1][1])
     told = re.fullmatch(r"line (\d{1,6}): (.*)", str(getattr(error, "where", "")).rpartition("\n")[2])
-    return Line(int(told[1]), _cut(told[2])) if told and told[2].isprintable() else None
+    return quoted(int(told[1]), told[2]) if told and told[2].isprintable() else None
 
 
 def line_at(filename: str, number: int) -> Line:
     """Return a line with its text, where Python still knows it."""
-    return Line(number, _cut(linecache.getline(filename, number).strip()))
+    return quoted(number, linecache.getline(filename, number))
 
 
-def _cut(text: str) -> str:
-    return text if len(text) <= LINE_LETTERS else text[: LINE_LETTERS - 3] + "..."
+def quoted(number: int, text: str) -> Line:
+    """Return a line with its text, cut where it is long."""
+    text = text.strip()
+    return Line(number, text if len(text) <= LINE_LETTERS else text[: LINE_LETTERS - 3] + "...")

@@ -80,8 +80,8 @@ def troubles(ps, rng):
     def notebook(**answers):
         return ps.with_answers(right() | answers)
 
-    wrong = next(name for name, (_, points, _) in LISTED[TASK]["wrong"].items() if 0 < points < ps.of[TASK])
-    left = LISTED[TASK]["wrong"][wrong][1]
+    wrong, loses = next((name, loses) for name, (_, loses, _) in LISTED[TASK]["wrong"].items() if 1 < len(loses) < 4)
+    left = ps.of[TASK] - len(loses)  # each part of this task has one point, as the visible tests have
     listed = {"listed_answers.py": (ANSWERS / "assignment_1.py").read_bytes()}
     lost = ps.points - ps.of[TASK]
     scripts = notebook()

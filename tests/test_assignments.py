@@ -109,10 +109,31 @@ def visible_points(task, function):
     return points_of(f"{task}-visible")
 
 
+def lost_parts(mark, visible):
+    """Return what a function loses: "v" for the visible tests, and the numbers of parts, such as "v24"."""
+    return "v" * (not visible) + "".join(str(n) for n, row in enumerate(mark.rows, 1) if not row.answer.right)
+
+
 @cache
 def marked(task, function):
     """Return a function's mark; a busy machine has time."""
     return TASKS[task].marked(function)
+
+
+def points_left(task, loses):
+    """Return the points of an answer that loses some parts."""
+    lost = sum(
+        points_of(f"{task}-visible") if part == "v" else TASKS[task].parts[int(part) - 1].points for part in loses
+    )
+    return points_of(f"{task}-visible") + TASKS[task].points - lost
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _without_hints():
+    """Points do not depend on hints, and a search for slips takes seconds."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("primkit.checks.answer.find_slips", lambda *_, **__: [])
+        yield
 
 
 def wrong_ones(task):
@@ -135,8 +156,10 @@ def test_every_task_has_answers_and_every_answer_a_task():
 
 
 @pytest.mark.parametrize("task", TASKS)
-def test_every_task_has_two_other_right_ways(task):
-    assert len(set(ANSWERS[task]["right"].values())) >= 2
+def test_every_task_has_five_right_ways_and_ten_wrong_ones(task):
+    assert len(set(ANSWERS[task]["right"].values())) >= (3 if task == "my_shapes" else 5)
+    assert len(set(wrong_ones(task))) >= 10
+    assert all(loses for _, loses, _ in wrong_ones(task))
 
 
 @pytest.mark.parametrize("task", TASKS)
@@ -176,10 +199,10 @@ def test_an_untouched_stub_gets_nothing(task):
     assert TASKS[task].marked(task, {}).points == 0
 
 
-@pytest.mark.parametrize(("task", "function", "points", "fault"), table("wrong"))
-def test_a_wrong_answer_gets_exactly_its_points_and_its_name(task, function, points, fault):
+@pytest.mark.parametrize(("task", "function", "loses", "fault"), table("wrong"))
+def test_a_wrong_answer_loses_exactly_its_parts_and_has_its_name(task, function, loses, fault):
     mark = marked(task, function)
-    assert mark.points + visible_points(task, function) == points, mark
+    assert lost_parts(mark, visible_points(task, function)) == loses, mark
     assert fault in {row.answer.fault for row in mark.rows if not row.answer.right}, mark
 
 

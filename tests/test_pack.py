@@ -239,8 +239,8 @@ def test_every_problem_set_has_its_page():
 def listed(task):
     """Return for each named fault of a task what its listed wrong answers keep: "2", or "0 to 3"."""
     kept = {}
-    for _, points, fault in sets.ANSWERS[task]["wrong"].values():
-        kept.setdefault(fault, set()).add(points)
+    for _, loses, fault in sets.ANSWERS[task]["wrong"].values():
+        kept.setdefault(fault, set()).add(sets.points_left(task, loses))
     return {name: " to ".join(f"{each:g}" for each in sorted({min(all_), max(all_)})) for name, all_ in kept.items()}
 
 

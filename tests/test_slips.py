@@ -2,6 +2,7 @@
 
 import json
 import linecache
+import os
 import re
 import textwrap
 from collections import Counter
@@ -11,7 +12,9 @@ import pytest
 
 import primkit as pk
 from primkit.checks import slips
+from primkit.course.grading.workers import Remote
 from tests.slips import make, named, right
+from tests.test_judge import afar, needs_fork, remote
 
 CHECKS = named.checks()
 MUTANTS = make.mutants()
@@ -164,6 +167,32 @@ def test_a_slip_in_a_helper_is_found():
     assert (
         "\nLook at line 3, `return u[0] * v[1] + u[1] * v[0]`: a sign" in CHECKS["ray_segment"][0](written(source)).says
     )
+
+
+@needs_fork
+def test_a_slip_is_told_from_afar_as_in_a_lesson():
+    """The source comes as text, and what is tried runs where the student's code runs, not here."""
+    marks_its_process = "def ray_segment(origin, direction, a, b, _=__import__('os').environ.update(TRIED='here')):"
+    source = SEGMENT.replace("def ray_segment(origin, direction, a, b):", marks_its_process)
+    with afar(ray_segment=written(source.replace("t >= 0", "t <= 0"))) as workers:
+        os.environ.pop("TRIED")  # from the line above
+        mine = remote(workers, "ray_segment")
+        answer = CHECKS["ray_segment"][0](mine)
+        assert " at line 9, `return t if t <= 0" in answer.says
+        assert "a comparison" in answer.says
+        assert "TRIED" not in os.environ
+        assert mine.afresh()(np.zeros(2), np.array([1.0, 0.0]), np.array([1.0, 1.0]), np.array([1.0, -1.0])) == np.inf
+
+
+@needs_fork
+@pytest.mark.parametrize(
+    "source", [[(1, "(" * 19_000)], [(1, "x" * 30_000)], [(0, "def f(x): pass")], "text", [1], None]
+)
+def test_a_source_that_is_none_finds_no_slip(source):
+    with afar(ray_segment=lambda *_: 1.0) as workers:
+        mine = remote(workers, "ray_segment")
+        mine = Remote(workers, mine.cell, "ray_segment", ([], source))
+        assert CHECKS["ray_segment"][0](mine).verdict == "wrong"
 
 
 def test_where_no_code_can_be_read_it_is_compared_with_the_plain_way():

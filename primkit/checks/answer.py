@@ -37,7 +37,7 @@ from .slips import WORDS, find_slips, places
 
 Verdict = Literal["not attempted", "wrong", "error", "right"]
 
-SEED = 20  # the same cases for everybody, on every run
+SEED = 20
 
 CALL_SECONDS = 3.0  # for one call: what takes longer is a loop that never ends, or far too slow
 SEARCH_SECONDS, LIKENESS_SECONDS = 3.0, 0.5  # for the slip in the student's own code, and for one like it in ours
@@ -167,6 +167,8 @@ class Check:
         judges what was asked for, so that any correct algorithm passes. See ``judges.py``.
     faults : tuple of Fault
         Usual faults, the special ones first: the first that fits is named.
+    seed : int, optional
+        What the cases are drawn with: everybody gets the same ones, on every run.
     """
 
     name: str
@@ -174,6 +176,7 @@ class Check:
     cases: Callable[[np.random.Generator], Iterable[Args]]
     judge: Judge
     faults: tuple[Fault, ...] = ()
+    seed: int = SEED
 
     def __call__(self, mine: Any, seconds: float = CALL_SECONDS) -> Answer:
         """Judge a student's function; each call of it may take so many seconds."""
@@ -181,7 +184,7 @@ class Check:
             return Answer("error", f"{self.name} must be a function, got {shown(mine)}.", "no function")
         cases: list[Case] = []
         warned: list[str] = []
-        for args in self.cases(np.random.default_rng(SEED)):
+        for args in self.cases(np.random.default_rng(self.seed)):
             given = copy.deepcopy(args)
             done = run(mine, given, seconds)
             got, raised = done.got, done.got if isinstance(done.got, Raised) else None

@@ -27,7 +27,7 @@ from typing import Any
 
 import numpy as np
 
-from ..own_code import Line, line_at
+from ..own_code import Line, quoted
 from .edits import edits
 
 PROBES = 6  # wrong cases that an edit is tried on first, and right ones that a part must spare
@@ -113,7 +113,7 @@ def _search(
             count = len(mended(edited, first)) and len(mended(edited, probes))
             if not count or len(mended(edited, spared)) < len(spared):
                 continue
-            slip = Slip(kind, line_at(code.filename, number), len(wrong))
+            slip = Slip(kind, code.line(number), len(wrong))
             if count == len(probes) and all(mended(edited, [case]) for case in (*wrong, *right)):
                 whole.append(slip)
             elif len(parts) < PARTS or count > parts[-1][0]:
@@ -139,59 +139,86 @@ def _quick(cases: Sequence[Any]) -> list[Any]:
 
 @dataclass
 class _Code:
-    """The source of a function, with those of its helpers from the same file, as a tree that can be built again."""
+    """The source of a function, with those of its helpers from the same cell, as a tree that can be built again."""
 
-    name: str
-    filename: str
+    function: Any
     tree: ast.Module
-    names: dict[str, Any]
+    lines: dict[int, str]
     near: Line | None
 
     def __deepcopy__(self, memo: Any) -> _Code:
         return replace(self, tree=copy.deepcopy(self.tree, memo))
 
+    @property
+    def name(self) -> str:
+        """The function's name."""
+        return str(self.function.__name__)
+
     @classmethod
     def of(cls, mine: Any, near: Line | None = None) -> _Code | None:
-        """Read a function's source; None where there is none."""
-        mine = inspect.unwrap(mine)
-        if not isinstance(mine, FunctionType):
-            return None
-        names = {**mine.__globals__, "_numpy": np}
-        names |= {
-            name: cell.cell_contents
-            for name, cell in zip(mine.__code__.co_freevars, mine.__closure__ or (), strict=True)
-        }
-        functions, todo = {}, [mine]
-        while todo:
-            function = todo.pop()
-            functions[function.__name__] = function
-            used = [names.get(name) for name in function.__code__.co_names + function.__code__.co_freevars]
-            todo += [
-                each
-                for each in used
-                if isinstance(each, FunctionType)
-                and each.__code__.co_filename == mine.__code__.co_filename
-                and each.__name__ not in functions
-            ]
+        """Read a function's source; None where there is none. Of a function far away, it is told: see ``Remote``."""
+        far = hasattr(mine, "to_edit")
+        function = mine.to_edit() if far else inspect.unwrap(mine)
         body: list[ast.stmt] = []
+        lines: dict[int, str] = {}
         try:
-            for function in functions.values():
-                lines, first = inspect.getsourcelines(function)
-                parsed = ast.parse(textwrap.dedent("".join(lines))).body[0]
+            for first, text in mine.source if far else pieces_of(function):
+                parsed = ast.parse(text).body[0]
                 if not isinstance(parsed, ast.FunctionDef):
                     return None
                 parsed.decorator_list = []
                 body.append(ast.increment_lineno(parsed, first - 1))
-        except (OSError, SyntaxError, TypeError, IndexError):
+                lines |= dict(enumerate(text.splitlines(), first))
+            return cls(function, copy.deepcopy(ast.Module(body, [])), lines, near) if body else None
+        except (SyntaxError, ValueError, IndexError, RecursionError, MemoryError):
             return None
-        return cls(mine.__name__, mine.__code__.co_filename, ast.Module(body, []), names, near)
+
+    def line(self, number: int) -> Line:
+        """Return a line with its text."""
+        return quoted(number, self.lines.get(number, ""))
 
     def build(self) -> Any:
         """Return the function that the tree now says; None when it says nothing that Python knows."""
-        names = dict(self.names)
         try:
             tree = ast.fix_missing_locations(self.tree)
-            exec(compile(tree, "<slip>", "exec", flags=__future__.annotations.compiler_flag), names)
+            if isinstance(self.function, FunctionType):
+                return built(self.function, tree)
+            return self.function.edited(ast.unparse(tree))
         except (SyntaxError, ValueError, TypeError, NameError):
             return None
-        return names.get(self.name)
+
+
+def pieces_of(function: Any) -> list[tuple[int, str]]:
+    """Return (first line, source) of a function and of its helpers from the same cell; none where they are unknown."""
+    if not isinstance(function, FunctionType):
+        return []
+    names, functions, todo = _names(function), dict[str, FunctionType](), [function]
+    while todo:
+        one = todo.pop()
+        functions[one.__name__] = one
+        used = [names.get(name) for name in one.__code__.co_names + one.__code__.co_freevars]
+        todo += [
+            each
+            for each in used
+            if isinstance(each, FunctionType)
+            and each.__code__.co_filename == function.__code__.co_filename
+            and each.__name__ not in functions
+        ]
+    try:
+        read = [inspect.getsourcelines(one) for one in functions.values()]
+    except (OSError, SyntaxError, TypeError, IndexError):
+        return []
+    return [(first, textwrap.dedent("".join(lines))) for lines, first in read]
+
+
+def built(function: FunctionType, code: Any) -> Any:
+    """Return what a function becomes when its source is other code: text, or a tree."""
+    names = {**_names(function), "_numpy": np}
+    exec(compile(code, "<slip>", "exec", flags=__future__.annotations.compiler_flag), names)
+    return names.get(function.__name__)
+
+
+def _names(function: FunctionType) -> dict[str, Any]:
+    """Return the names that a function sees."""
+    names, cells = function.__code__.co_freevars, function.__closure__ or ()
+    return function.__globals__ | {name: cell.cell_contents for name, cell in zip(names, cells, strict=True)}

@@ -351,67 +351,136 @@ def busy_by_boxes(points, corner, resolution, shape, least):
     return [tuple(center) for center in corner + resolution * centers]
 
 
-# Each wrong answer with the points that it gets of the task's five, and the short name of its fault.
+# --- other right ways, and other wrong ones --------------------------------------------------------------------
+
+
+def arc_by_roots(origin, direction, center, radius, start, sweep):
+    """The roots of a polynomial; a hit as a complex number, turned back by the start."""
+    w = origin - center
+    roots = np.roots([1.0, 2 * w @ direction, w @ w - radius**2])
+    real = sorted(t.real for t in roots if abs(t.imag) < 1e-12)
+    out = [complex(*(w + t * direction)) * cmath.exp(-1j * (start + sweep / 2)) for t in real]
+    return next((t for t, z in zip(real, out, strict=True) if t >= 0 and abs(cmath.phase(z)) <= sweep / 2), INF)
+
+
+def arc_by_bearings(origin, direction, center, radius, start, sweep):
+    """Both hits by their bearings from the centre, to either side of the foot of the perpendicular."""
+    nx, ny = -direction[1], direction[0]
+    aside = (origin[0] - center[0]) * nx + (origin[1] - center[1]) * ny
+    if abs(aside) > radius:
+        return INF
+    best, foot, half = INF, math.atan2(ny, nx), math.acos(aside / radius)
+    for bearing in (foot - half, foot + half):
+        x = center[0] + radius * math.cos(bearing) - origin[0]
+        y = center[1] + radius * math.sin(bearing) - origin[1]
+        t = x * direction[0] + y * direction[1]
+        if 0 <= t < best and (bearing - start) % TURN <= sweep:
+            best = t
+    return best
+
+
+def sonar_in_order(ranges, angles, axis, cone, range_min, range_max):
+    """From the nearest surface outwards, until one is heard."""
+    for k in np.argsort(ranges):
+        turned = math.remainder(angles[k] - axis, TURN)
+        if range_min <= ranges[k] <= range_max and abs(turned) <= cone / 2:
+            return float(ranges[k])
+    return INF
+
+
+def sonar_by_complex(ranges, angles, axis, cone, range_min, range_max):
+    off = np.abs(np.angle(np.exp(1j * (np.asarray(angles) - axis))))
+    read = np.where((off <= cone / 2) & np.isfinite(ranges), ranges, INF)
+    return float(np.where((read < range_min) | (read > range_max), INF, read).min())
+
+
+def sonar_masked(ranges, angles, axis, cone, range_min, range_max):
+    """A masked array, turned so that the axis lies at half a turn."""
+    off = (angles - axis + 3 * np.pi) % TURN - np.pi
+    deaf = np.isnan(ranges) | (ranges < range_min) | (ranges > range_max) | (abs(off) > cone / 2)
+    return float(np.ma.min(np.ma.array(ranges, mask=deaf)).item() or 0.0) if not deaf.all() else INF
+
+
+def busy_by_codes(points, corner, resolution, shape, least):
+    """One number for each cell, sorted; equal ones stand together."""
+    i, j = ((points[:, axis] - corner[axis]) // resolution for axis in (0, 1))
+    inside = (i >= 0) & (i < shape[0]) & (j >= 0) & (j < shape[1])
+    codes = np.sort(i[inside] * shape[1] + j[inside])
+    starts = np.flatnonzero(np.diff(codes, prepend=-1))
+    codes = codes[starts[np.diff(np.append(starts, len(codes))) >= least]] if len(codes) else codes
+    return np.column_stack([codes // shape[1] + 0.5, codes % shape[1] + 0.5]) * resolution + corner
+
+
+# Each wrong answer with what it loses (v: the visible tests; 1, 2, ...: hidden parts), and the short name of its fault.
 ANSWERS = {
     "ray_arc": {
         "right": {
+            "roots": arc_by_roots,
+            "bearings": arc_by_bearings,
             "formula": arc_by_formula,
             "complex numbers": arc_by_complex_numbers,
             "bisection": arc_by_bisection,
         },
         "wrong": {
-            "sign": (arc_from_the_wall, 0, "sign turned round"),
-            "near root": (arc_near, 2, "near root alone"),
-            "whole circle": (arc_whole, 1, "whole circle for arc"),
-            "far root first": (arc_far_first, 4, "far root before near"),
-            "behind": (arc_behind, 4, "hits behind the robot"),
-            "clockwise": (arc_clockwise, 0, "clockwise for counter-clockwise"),
-            "not wrapped": (arc_not_wrapped, 4, "bearing not wrapped"),
-            "wrapped once": (arc_wrapped_once, 4, "bearing not wrapped"),
-            "sweep as end": (arc_to_the_end, 1, "sweep taken for the end"),
-            "from the robot": (arc_from_robot, 0, "bearing from the robot"),
-            "none for a miss": (arc_none, 0, "None for no hit"),
-            "root below zero": (arc_raises, 3, "raises ValueError"),
+            "sign": (arc_from_the_wall, "v1234", "sign turned round"),
+            "near root": (arc_near, "v24", "near root alone"),
+            "whole circle": (arc_whole, "v234", "whole circle for arc"),
+            "far root first": (arc_far_first, "13", "far root before near"),
+            "behind": (arc_behind, "4", "hits behind the robot"),
+            "clockwise": (arc_clockwise, "v1234", "clockwise for counter-clockwise"),
+            "not wrapped": (arc_not_wrapped, "3", "bearing not wrapped"),
+            "wrapped once": (arc_wrapped_once, "3", "bearing not wrapped"),
+            "sweep as end": (arc_to_the_end, "1234", "sweep taken for the end"),
+            "from the robot": (arc_from_robot, "v1234", "bearing from the robot"),
+            "none for a miss": (arc_none, "v1234", "None for no hit"),
+            "root below zero": (arc_raises, "v1", "raises ValueError"),
         },
     },
     "sonar_reading": {
-        "right": {"loop": sonar_by_loop, "cosine": sonar_by_cosine},
+        "right": {
+            "in order": sonar_in_order,
+            "complex numbers": sonar_by_complex,
+            "masked": sonar_masked,
+            "loop": sonar_by_loop,
+            "cosine": sonar_by_cosine,
+        },
         "wrong": {
-            "all around": (sonar_all_around, 0, "cone left out"),
-            "twice as wide": (sonar_twice_as_wide, 0, "whole cone to each side"),
-            "not wrapped": (sonar_not_wrapped, 4, "bearing not wrapped"),
-            "too near hides": (sonar_hidden, 3, "too near hides the rest"),
-            "cut": (sonar_cut, 3, "cut to the limits"),
-            "no range_min": (sonar_no_min, 3, "no range_min"),
-            "no range_max": (sonar_no_max, 4, "no range_max"),
-            "mean": (sonar_mean, 0, "mean"),
-            "nan": (sonar_nan, 4, "nan spreads"),
-            "empty cone": (sonar_argmin, 3, "raises ValueError"),
+            "all around": (sonar_all_around, "v1234", "cone left out"),
+            "twice as wide": (sonar_twice_as_wide, "v1234", "whole cone to each side"),
+            "not wrapped": (sonar_not_wrapped, "2", "bearing not wrapped"),
+            "too near hides": (sonar_hidden, "v3", "too near hides the rest"),
+            "cut": (sonar_cut, "v3", "cut to the limits"),
+            "no range_min": (sonar_no_min, "v3", "no range_min"),
+            "no range_max": (sonar_no_max, "3", "no range_max"),
+            "mean": (sonar_mean, "v1234", "mean"),
+            "nan": (sonar_nan, "4", "nan spreads"),
+            "empty cone": (sonar_argmin, "34", "raises ValueError"),
         },
     },
     "busy_cells": {
         "right": {
+            "codes": busy_by_codes,
             "in place": busy_in_place,
             "counter": busy_by_counter,
             "table": busy_by_table,
             "boxes": busy_by_boxes,
         },
         "wrong": {
-            "corner": (busy_corner, 0, "corner for centre"),
-            "origin": (busy_origin, 0, "world origin for corner"),
-            "from the corner": (busy_from_corner, 0, "places seen from the corner"),
-            "numbers": (busy_numbers, 0, "cell numbers for metres"),
-            "more than": (busy_more_than, 0, "more than, for at least"),
-            "any": (busy_any, 3, "no threshold"),
-            "beside": (busy_beside, 3, "cells beside the board"),
-            "table": (busy_table, 3, "raises IndexError"),
-            "half checked": (busy_half_checked, 4, "negative index"),
-            "clipped": (busy_clipped, 3, "pushed onto the board"),
-            "int": (busy_int, 4, "int for floor"),
-            "round": (busy_round, 1, "round for floor"),
-            "upper border": (busy_upper, 4, "upper border for lower"),
-            "histogram": (busy_histogram, 4, "board's far border kept"),
-            "x and y": (busy_swapped, 1, "x and y changed places"),
+            "corner": (busy_corner, "v1234", "corner for centre"),
+            "origin": (busy_origin, "v1234", "world origin for corner"),
+            "from the corner": (busy_from_corner, "v1234", "places seen from the corner"),
+            "numbers": (busy_numbers, "v1234", "cell numbers for metres"),
+            "more than": (busy_more_than, "v1234", "more than, for at least"),
+            "any": (busy_any, "v2", "no threshold"),
+            "beside": (busy_beside, "34", "cells beside the board"),
+            "table": (busy_table, "34", "raises IndexError"),
+            "half checked": (busy_half_checked, "3", "negative index"),
+            "clipped": (busy_clipped, "34", "pushed onto the board"),
+            "int": (busy_int, "3", "int for floor"),
+            "round": (busy_round, "v123", "round for floor"),
+            "upper border": (busy_upper, "4", "upper border for lower"),
+            "histogram": (busy_histogram, "4", "board's far border kept"),
+            "x and y": (busy_swapped, "1234", "x and y changed places"),
         },
     },
 }

@@ -4,10 +4,12 @@
 
 import math
 import statistics
+from itertools import combinations
 
 import numpy as np
 from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.sparse import coo_array
+from scipy.spatial import ConvexHull, cKDTree
 from scipy.spatial.distance import cdist
 from sklearn.cluster import AgglomerativeClustering
 
@@ -156,8 +158,10 @@ def medians_general(points, centers, metric="cityblock", middle=np.median, round
     for _ in range(rounds):
         labels = cdist(points, centers, metric).argmin(axis=1)
         groups = [points[labels == k] for k in range(len(centers))]
-        pairs = zip(groups, centers, strict=True)
+        pairs, before = zip(groups, centers, strict=True), centers
         centers = np.array([middle(group, axis=0) if len(group) else center for group, center in pairs])
+        if (centers == before).all():
+            break
     return centers
 
 
@@ -368,7 +372,163 @@ def corridor_degrees(left, right):
     return math.degrees(bearing), width
 
 
-# Each wrong answer with the points that it gets of the task's five, and the short name of its fault.
+# --- other right ways, and other wrong ones --------------------------------------------------------------------
+
+
+def cut_after(points, k):
+    """A group ends one point late."""
+    return np.roll(cut_turned(points, k), 1)
+
+
+def cut_along_x(points, k):
+    """Gaps along x alone."""
+    return cut_ring(np.abs(points[:, 0] - np.roll(points[:, 0], 1)), k)
+
+
+def cut_in_equal_parts(points, k):
+    return np.arange(len(points)) * k // len(points)
+
+
+def medians_by_tree(points, centers):
+    """Nearest centres from a tree of city blocks; the middle of sorted values."""
+    while True:
+        nearest = cKDTree(centers).query(points, p=1)[1]
+        moved = centers.copy()
+        for k in set(nearest):
+            own = np.sort(points[nearest == k], axis=0)
+            moved[k] = (own[(len(own) - 1) // 2] + own[len(own) // 2]) / 2
+        if np.allclose(moved, centers, rtol=0, atol=1e-12):
+            return moved
+        centers = moved
+
+
+def medians_by_recursion(points, centers):
+    near = [min(range(len(centers)), key=lambda k, p=p: abs(p - centers[k]).sum()) for p in points]
+    moved = np.array(
+        [
+            np.median([p for p, own in zip(points, near, strict=True) if own == k], axis=0) if k in near else center
+            for k, center in enumerate(centers)
+        ]
+    )
+    return moved if (moved == centers).all() else medians_by_recursion(points, moved)
+
+
+def medians_by_columns(points, centers):
+    """x and y apart, in place of a copy."""
+    ends, (x, y) = np.array(centers, dtype=float), np.asarray(points).T
+    for _ in range(500):
+        away = np.abs(np.subtract.outer(x, ends[:, 0])) + np.abs(np.subtract.outer(y, ends[:, 1]))
+        member = away.argmin(axis=1)[:, None] == np.arange(len(ends))
+        for k in np.flatnonzero(member.any(axis=0)):
+            ends[k] = np.percentile(x[member[:, k]], 50), np.percentile(y[member[:, k]], 50)
+    return ends
+
+
+def medians_chebyshev(points, centers):
+    return medians_general(points, centers, metric="chebyshev")
+
+
+def medians_of_extents(points, centers):
+    return medians_general(points, centers, middle=lambda group, axis: (group.min(axis) + group.max(axis)) / 2)
+
+
+def fog_by_all_pairs(points, threshold, rng):
+    """Plain Python over all pairs, refitted."""
+    best, most = None, 0
+    for (ax, ay), (bx, by) in combinations(map(tuple, points), 2):
+        length = math.hypot(bx - ax, by - ay)
+        if length == 0:
+            continue
+        n = np.array([ay - by, bx - ax]) / length
+        d = n @ (ax, ay)
+        n, d = (n, d) if d >= 0 else (-n, -d)
+        out = points @ n - d
+        if out.max() <= threshold and (count := int((out >= -threshold).sum())) > most:
+            best, most = out >= -threshold, count
+    line = None if best is None else pk.fit_line(points[best])
+    return None if line is None else (line.angle, line.offset)
+
+
+def fog_by_library(points, threshold, rng):
+    """Lines one after the other from the library; a line with something behind it is taken away, and so on."""
+    left = np.asarray(points)
+    while len(np.unique(left, axis=0)) > 1:
+        found = pk.find_lines(left, threshold, left_over=0.0, trials=3000, rng=rng)
+        for one in sorted(found, key=lambda one: -one.inliers.sum()):
+            line = one.line if one.line.offset >= 0 else one.line.turned_round()
+            if line.signed_distance(points).max() <= 2 * threshold:
+                return line.angle, line.offset
+        left = left[:0]
+    return None
+
+
+def fog_by_hull(points, threshold, rng):
+    """The side of the convex hull with most hits along it: nothing lies behind a hull."""
+    if len(np.unique(points, axis=0)) < 2:
+        return None
+    ring = points[ConvexHull(points).vertices] if len(points) > 2 else points
+    best = np.zeros(len(points), dtype=bool)
+    for p, q in combinations(ring, 2):
+        n = np.array([p[1] - q[1], q[0] - p[0]]) / math.dist(p, q)
+        out = (points - p) @ n * (1 if p @ n >= 0 else -1)
+        for move in np.linspace(0, max(out.max(), 0), 3):
+            near = np.abs(out - move) <= threshold
+            if (out <= move + threshold).all() and near.sum() > best.sum():
+                best = near
+    line = pk.fit_line(points[best])
+    for _ in range(3):
+        line = pk.fit_line(points[np.abs(line.signed_distance(points)) <= threshold])
+    return line.angle, line.offset
+
+
+def fog_farthest_third(points, threshold, rng):
+    """Least squares over the farthest third of all hits."""
+    if len(np.unique(points, axis=0)) < 2:
+        return None
+    return fog_least_squares(points[np.argsort(np.linalg.norm(points, axis=1))[-max(len(points) // 3, 2) :]], 0, 0)
+
+
+def fog_in_degrees(points, threshold, rng):
+    line = fog_by_bearings(points, threshold, rng)
+    return line and (math.degrees(line[0]), line[1])
+
+
+def fog_turned_pair(points, threshold, rng):
+    line = fog_by_bearings(points, threshold, rng)
+    return line and line[::-1]
+
+
+def fog_along(points, threshold, rng):
+    """The bearing of the wall instead of its normal's."""
+    line = fog_by_bearings(points, threshold, rng)
+    return line and (line[0] + math.pi / 2, line[1])
+
+
+def corridor_by_regression(left, right):
+    """Turn the walls level, fit one slope for both, turn by it, and again."""
+    bearing = bearing_of(left if len(left) > 1 else right)
+    for _ in range(60):
+        c, s = math.cos(bearing), math.sin(bearing)
+        x, y = np.concatenate([(wall - wall.mean(axis=0)) @ [[c, -s], [s, c]] for wall in (left, right)]).T
+        bearing += 0.5 * math.atan2(2 * (x @ y), x @ x - y @ y)
+    return with_width(bearing, left, right)
+
+
+def corridor_by_svd(left, right):
+    """One design matrix for both walls, a column of ones for each; reduced by the ones, then the least direction."""
+    ones = np.zeros((len(left) + len(right), 2))
+    ones[: len(left), 0], ones[len(left) :, 1] = 1, 1
+    both = np.vstack([left, right])
+    normal = np.linalg.svd(both - ones @ np.linalg.lstsq(ones, both, rcond=None)[0])[2][-1]
+    d, e = np.linalg.lstsq(ones, both @ normal, rcond=None)[0]
+    return math.atan2(normal[1], normal[0]) - math.pi / 2, abs(d - e)
+
+
+def corridor_turned_pair(left, right):
+    return corridor_by_formula(left, right)[::-1]
+
+
+# Each wrong answer with what it loses (v: the visible tests; 1, 2, ...: hidden parts), and the short name of its fault.
 ANSWERS = {
     "cut_scan": {
         "right": {
@@ -379,55 +539,79 @@ ANSWERS = {
             "ring linkage": cut_by_ring_linkage,
         },
         "wrong": {
-            "open chain": (cut_open, 3, "ring not closed"),
-            "one cut too many": (cut_once_more, 0, "one cut too many"),
-            "in bearing": (cut_in_bearing, 4, "gap in bearing"),
-            "in range": (cut_in_range, 3, "gap in range"),
-            "narrowest": (cut_narrowest, 1, "narrowest gaps"),
-            "linking": (cut_by_linking, 0, None),
-            "nearness": (cut_by_nearness, 4, "joined by nearness"),
+            "one point late": (cut_after, "v123", None),
+            "along x": (cut_along_x, "123", None),
+            "equal parts": (cut_in_equal_parts, "v123", None),
+            "open chain": (cut_open, "v2", "ring not closed"),
+            "one cut too many": (cut_once_more, "v1234", "one cut too many"),
+            "in bearing": (cut_in_bearing, "3", "gap in bearing"),
+            "in range": (cut_in_range, "12", "gap in range"),
+            "narrowest": (cut_narrowest, "v123", "narrowest gaps"),
+            "linking": (cut_by_linking, "v1234", None),
+            "nearness": (cut_by_nearness, "3", "joined by nearness"),
         },
     },
     "k_medians": {
-        "right": {"loops": medians_by_loops, "labels": medians_by_labels},
+        "right": {
+            "tree": medians_by_tree,
+            "recursion": medians_by_recursion,
+            "columns": medians_by_columns,
+            "loops": medians_by_loops,
+            "labels": medians_by_labels,
+        },
         "wrong": {
-            "means": (medians_means, 0, "mean for median"),
-            "k-means": (medians_k_means, 0, "K-Means for K-Medians"),
-            "euclid": (medians_euclid, 3, "straight distance"),
-            "once": (medians_once, 3, "one round"),
-            "low": (medians_low, 0, "one of two middle values"),
-            "point": (medians_point, 0, "a point for the median"),
-            "nan": (medians_nan, 4, "nan for a lonely centre"),
-            "lost": (medians_lost, 4, "lonely centre lost"),
+            "chebyshev": (medians_chebyshev, "2", None),
+            "extents": (medians_of_extents, "v123", None),
+            "means": (medians_means, "v123", "mean for median"),
+            "k-means": (medians_k_means, "v123", "K-Means for K-Medians"),
+            "euclid": (medians_euclid, "2", "straight distance"),
+            "once": (medians_once, "2", "one round"),
+            "low": (medians_low, "v123", "one of two middle values"),
+            "point": (medians_point, "v123", "a point for the median"),
+            "nan": (medians_nan, "3", "nan for a lonely centre"),
+            "lost": (medians_lost, "3", "lonely centre lost"),
         },
     },
     "wall_in_fog": {
-        "right": {"random pairs": fog_by_ransac, "bearings": fog_by_bearings},
+        "right": {
+            "all pairs": fog_by_all_pairs,
+            "library": fog_by_library,
+            "hull": fog_by_hull,
+            "random pairs": fog_by_ransac,
+            "bearings": fog_by_bearings,
+        },
         "wrong": {
-            "most inliers": (fog_ransac_plain, 2, "hits behind the wall"),
-            "least squares": (fog_least_squares, 1, "least squares over all"),
-            "wrong side": (fog_nearest, 1, "hits behind the wall"),
-            "never none": (fog_never_none, 3, "a line from one point"),
-            "two farthest hits": (fog_two_farthest, 2, "line through the farthest hits"),
-            "farthest pair": (fog_farthest_pair, 0, "line through the farthest hits"),
+            "farthest third": (fog_farthest_third, "12", "hits behind the wall"),
+            "degrees": (fog_in_degrees, "v123", None),
+            "offset first": (fog_turned_pair, "v123", None),
+            "along": (fog_along, "v123", None),
+            "most inliers": (fog_ransac_plain, "v2", "hits behind the wall"),
+            "least squares": (fog_least_squares, "v12", "least squares over all"),
+            "wrong side": (fog_nearest, "v12", "hits behind the wall"),
+            "never none": (fog_never_none, "v3", "a line from one point"),
+            "two farthest hits": (fog_two_farthest, "12", "line through the farthest hits"),
+            "farthest pair": (fog_farthest_pair, "v123", "line through the farthest hits"),
         },
     },
     "corridor": {
         "right": {
+            "regression": corridor_by_regression,
+            "one matrix": corridor_by_svd,
             "formula": corridor_by_formula,
             "search": corridor_by_search,
             "eigenvectors": corridor_by_eigenvectors,
         },
         "wrong": {
-            "mean of two": (corridor_mean, 3, "mean of two bearings"),
-            "plain mean": (corridor_plain_mean, 3, "mean of two bearings"),
-            "together": (corridor_together, 1, "one line for both"),
-            "distance of means": (corridor_means, 1, "distance of the means"),
-            "across": (corridor_across, 0, "across for along"),
-            "in y": (corridor_in_y, 2, "errors in y"),
-            "longer alone": (corridor_longer, 3, "longer wall alone"),
-            "half the width": (corridor_half, 0, "half the width"),
-            "degrees": (corridor_degrees, 0, None),
+            "width first": (corridor_turned_pair, "v123", None),
+            "mean of two": (corridor_mean, "3", "mean of two bearings"),
+            "plain mean": (corridor_plain_mean, "3", "mean of two bearings"),
+            "together": (corridor_together, "v23", "one line for both"),
+            "distance of means": (corridor_means, "v23", "distance of the means"),
+            "across": (corridor_across, "v123", "across for along"),
+            "in y": (corridor_in_y, "v3", "errors in y"),
+            "longer alone": (corridor_longer, "3", "longer wall alone"),
+            "half the width": (corridor_half, "v123", "half the width"),
+            "degrees": (corridor_degrees, "v123", None),
         },
     },
 }

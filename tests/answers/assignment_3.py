@@ -8,6 +8,8 @@ from itertools import combinations
 import numpy as np
 import shapely
 from scipy.optimize import least_squares, minimize
+from scipy.spatial import ConvexHull, HalfspaceIntersection
+from scipy.stats import chi2
 
 import primkit as pk
 
@@ -32,8 +34,7 @@ def pipe_by_two_numbers(points, radius):
         return None
     middle = points.mean(axis=0)
     start = middle + radius * middle / np.linalg.norm(middle)
-    cost = lambda q: float(((((points - q) ** 2).sum(axis=1) / radius**2 - 1) ** 2).sum())  # noqa: E731
-    return minimize(cost, start, method="Nelder-Mead", options={"xatol": 1e-8, "fatol": 1e-16, "maxiter": 2000}).x
+    return least_squares(lambda q: ((points - q) ** 2).sum(axis=1) / radius**2 - 1, start, ftol=1e-14, xtol=1e-14).x
 
 
 def pipe_by_pairs(points, radius):
@@ -329,58 +330,235 @@ def std_inverse(bearings, noise):
     return float(noise * np.sqrt(np.linalg.inv(J.T @ J)[2, 2]))
 
 
-# Each wrong answer with the points that it gets of the task's five, and the short name of its fault.
+# --- other right ways, and other wrong ones --------------------------------------------------------------------
+
+
+def pipe_by_bfgs(points, radius):
+    """The sum of squared gaps, its slope by hand."""
+    if len(np.unique(points, axis=0)) < 2:
+        return None
+    start = points.mean(axis=0) * (1 + radius / np.linalg.norm(points.mean(axis=0)))
+
+    def cost(c):
+        spokes = (points - c) / radius
+        away = np.linalg.norm(spokes, axis=1)
+        gap = away - 1
+        return gap @ gap, -2 * (gap / away) @ spokes / radius
+
+    return minimize(cost, start, jac=True, method="BFGS", options={"gtol": 1e-12}).x
+
+
+def pipe_by_simplex(points, radius):
+    """Nelder and Mead's search for the least gaps, in millimetres, from the middle of the outermost hits on."""
+    if len({tuple(p) for p in points}) < 2:
+        return None
+    p, q = max(combinations(points, 2), key=lambda pair: math.dist(*pair))
+    start = 1000 * ((p + q) / 2 + 0.7 * radius * (p + q) / np.linalg.norm(p + q))
+    cost = lambda c: ((np.hypot(*(1000 * points - c).T) - 1000 * radius) ** 2).sum()  # noqa: E731
+    return (minimize(cost, start, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-9}).x / 1000).tolist()
+
+
+def pipe_mean(points, radius):
+    return points.mean(axis=0) if len(np.unique(points, axis=0)) > 1 else None
+
+
+def pipe_from_the_ends(points, radius):
+    """Through the first and the last hit, and no other."""
+    if len(np.unique(points, axis=0)) < 2:
+        return None
+    return pipe_by_pairs(points[[0, -1]], radius)
+
+
+def pipe_beyond_the_middle(points, radius):
+    """A radius beyond the middle one of the hits."""
+    if len(np.unique(points, axis=0)) < 2:
+        return None
+    middle = points[len(points) // 2]
+    return middle * (1 + radius / np.linalg.norm(middle))
+
+
+def hexagon_by_halfspaces(lines, inside):
+    """SciPy's intersection of half-planes, its corners in the order of their hull."""
+    normals = np.column_stack([np.cos(lines[:, 0]), np.sin(lines[:, 0])])
+    out = np.where(normals @ inside < lines[:, 1], 1.0, -1.0)[:, None]
+    corners = HalfspaceIntersection(np.hstack([normals, -lines[:, 1:]]) * out, inside).intersections
+    return corners[ConvexHull(corners).vertices]
+
+
+def hexagon_by_walking(lines, inside):
+    """Plain Python: from a line on to the one whose outward bearing comes next."""
+    out = [(a, d) if math.cos(a) * inside[0] + math.sin(a) * inside[1] < d else (a + math.pi, -d) for a, d in lines]
+    todo, ring = out[1:], [out[0]]
+    while todo:
+        following = min(todo, key=lambda line: (line[0] - ring[-1][0]) % TURN)
+        todo.remove(following)
+        ring.append(following)
+    return np.array([crossing(ring[k - 1], ring[k]) for k in range(6)])
+
+
+def hexagon_second_neighbours(lines, inside):
+    out = np.array(sorted(turned(lines, inside).tolist(), key=lambda line: line[0] % TURN))
+    return np.array([crossing(out[k], out[(k + 2) % 6]) for k in range(6)])
+
+
+def hexagon_unsigned(lines, inside):
+    """Offsets without their sign: right only where the origin lies inside and normals point outwards."""
+    return hexagon_by_all_pairs(np.column_stack([lines[:, 0], abs(lines[:, 1])]), np.zeros(2))
+
+
+def hexagon_regular(lines, inside):
+    """As if all six sides were equally long."""
+    reach = np.mean(abs(lines[:, 1] - np.cos(lines[:, 0]) * inside[0] - np.sin(lines[:, 0]) * inside[1]))
+    bearings = lines[0, 0] + np.pi / 6 + np.pi / 3 * np.arange(6)
+    return inside + reach / math.cos(math.pi / 6) * np.column_stack([np.cos(bearings), np.sin(bearings)])
+
+
+def name_by_chance(points, spread):
+    """A chi-square test: could noise alone do that?"""
+    return "coin" if chi2.sf(len(points) * (misfit(points) / spread) ** 2, len(points) - 3) > 1e-8 else "nut"
+
+
+def name_nut(points, spread):
+    return "nut"
+
+
+def name_by_the_worst(points, spread):
+    """One point of 150 lies three deviations off in every second coin."""
+    return "nut" if np.abs(pk.fit_circle(points).signed_distance(points)).max() > 2.5 * spread else "coin"
+
+
+def name_by_squares(points, spread):
+    """Square millimetres beside millimetres."""
+    return "nut" if misfit(points) ** 2 > 1.7 * spread else "coin"
+
+
+def std_by_solving(bearings, noise):
+    """The last column of the inverse alone."""
+    if not enough(bearings):
+        return INF
+    J = np.column_stack([np.cos(bearings), np.sin(bearings), np.ones(len(bearings))])
+    return noise * math.sqrt(np.linalg.solve(J.T @ J, [0, 0, 1])[2])
+
+
+def std_by_moments(bearings, noise):
+    """Plain sums: what is left of N once the centre has taken its share."""
+    c, s = [math.cos(b) for b in bearings], [math.sin(b) for b in bearings]
+    a, b, d = sum(x * x for x in c), sum(x * y for x, y in zip(c, s, strict=True)), sum(y * y for y in s)
+    det = a * d - b * b
+    if det < 1e-12 or not enough(bearings):
+        return INF
+    p, q = sum(c), sum(s)
+    return noise / math.sqrt(len(c) - (d * p * p - 2 * b * p * q + a * q * q) / det)
+
+
+def std_without_root(bearings, noise):
+    """The root is missing, and the noise is not squared."""
+    return std_by_qr(bearings, noise) ** 2 / noise if noise else 0.0
+
+
+def std_of_all(bearings, noise):
+    if not enough(bearings):
+        return INF
+    J = np.column_stack([np.cos(bearings), np.sin(bearings), np.ones(len(bearings))])
+    return float(noise * np.sqrt(np.trace(np.linalg.inv(J.T @ J))))
+
+
+def std_none(bearings, noise):
+    return std_by_qr(bearings, noise) if enough(bearings) else None
+
+
+def std_half_known(bearings, noise):
+    """x of the centre is fitted, y is taken for known."""
+    if not enough(bearings):
+        return INF
+    J = np.column_stack([np.cos(bearings), np.ones(len(bearings))])
+    return float(noise * np.sqrt(np.linalg.inv(J.T @ J)[1, 1]))
+
+
+# Each wrong answer with what it loses (v: the visible tests; 1, 2, ...: hidden parts), and the short name of its fault.
 ANSWERS = {
     "pipe_center": {
-        "right": {"least squares": pipe_by_scipy, "squared distances": pipe_by_two_numbers, "pairs": pipe_by_pairs},
+        "right": {
+            "BFGS": pipe_by_bfgs,
+            "simplex": pipe_by_simplex,
+            "least squares": pipe_by_scipy,
+            "squared distances": pipe_by_two_numbers,
+            "pairs": pipe_by_pairs,
+        },
         "wrong": {
-            "free radius": (pipe_free, 1, "radius not used"),
-            "kasa": (pipe_kasa, 1, "radius not used"),
-            "near side": (pipe_near_side, 0, "centre on the robot's side"),
-            "beyond the mean": (pipe_beyond_mean, 0, "a radius beyond the mean"),
-            "beyond the nearest": (pipe_beyond_nearest, 0, "a radius beyond the nearest hit"),
-            "whole circle": (pipe_whole, 0, "a whole circle"),
-            "never none": (pipe_never_none, 4, "a centre from one point"),
+            "mean": (pipe_mean, "v123", None),
+            "from the ends": (pipe_from_the_ends, "2", None),
+            "beyond the middle": (pipe_beyond_the_middle, "v123", None),
+            "free radius": (pipe_free, "v23", "radius not used"),
+            "kasa": (pipe_kasa, "v23", "radius not used"),
+            "near side": (pipe_near_side, "v123", "centre on the robot's side"),
+            "beyond the mean": (pipe_beyond_mean, "v123", "a radius beyond the mean"),
+            "beyond the nearest": (pipe_beyond_nearest, "v123", "a radius beyond the nearest hit"),
+            "whole circle": (pipe_whole, "v123", "a whole circle"),
+            "never none": (pipe_never_none, "3", "a centre from one point"),
         },
     },
     "hexagon_corners": {
-        "right": {"all pairs": hexagon_by_all_pairs, "clipping": hexagon_by_clipping, "duality": hexagon_by_duality},
+        "right": {
+            "half-planes": hexagon_by_halfspaces,
+            "walking": hexagon_by_walking,
+            "all pairs": hexagon_by_all_pairs,
+            "clipping": hexagon_by_clipping,
+            "duality": hexagon_by_duality,
+        },
         "wrong": {
-            "as given": (hexagon_as_given, 1, "lines in the order given"),
-            "as given, outwards": (hexagon_as_given_outwards, 1, "lines in the order given"),
-            "not turned": (hexagon_not_turned, 2, "normals not turned outwards"),
-            "origin": (hexagon_origin, 4, "origin for the place inside"),
-            "clockwise": (hexagon_clockwise, 1, "clockwise for counter-clockwise"),
-            "left to right": (hexagon_left_to_right, 0, "corners not in order"),
-            "all crossings": (hexagon_all_crossings, 0, None),
+            "second neighbours": (hexagon_second_neighbours, "v1234", None),
+            "unsigned": (hexagon_unsigned, "v34", None),
+            "regular": (hexagon_regular, "1234", None),
+            "as given": (hexagon_as_given, "v234", "lines in the order given"),
+            "as given, outwards": (hexagon_as_given_outwards, "v234", "lines in the order given"),
+            "not turned": (hexagon_not_turned, "v34", "normals not turned outwards"),
+            "origin": (hexagon_origin, "4", "origin for the place inside"),
+            "clockwise": (hexagon_clockwise, "1234", "clockwise for counter-clockwise"),
+            "left to right": (hexagon_left_to_right, "v1234", "corners not in order"),
+            "all crossings": (hexagon_all_crossings, "v1234", None),
         },
     },
     "nut_or_coin": {
         "right": {
+            "chance": name_by_chance,
             "waves": name_by_waves,
             "rivals": name_by_rivals,
             "better fit": name_by_better_fit,
             "spread": name_by_spread,
         },
         "wrong": {
-            "always coin": (name_coin, 0, "one name for all"),
-            "one millimetre": (name_one_millimetre, 0, "a fixed limit"),
-            "by share": (name_by_share, 3, "a limit by size alone"),
-            "around the mean": (name_around_mean, 4, "mean taken for the centre"),
-            "capitals": (name_with_capitals, 0, "neither nut nor coin"),
-            "true or false": (name_as_bool, 0, "neither nut nor coin"),
-            "turned round": (name_turned_round, 0, "names changed places"),
+            "always nut": (name_nut, "v123", "one name for all"),
+            "the worst point": (name_by_the_worst, "123", None),
+            "squares": (name_by_squares, "v123", "one name for all"),
+            "always coin": (name_coin, "v123", "one name for all"),
+            "one millimetre": (name_one_millimetre, "v123", "a fixed limit"),
+            "by share": (name_by_share, "2", "a limit by size alone"),
+            "around the mean": (name_around_mean, "3", "mean taken for the centre"),
+            "capitals": (name_with_capitals, "v123", "neither nut nor coin"),
+            "true or false": (name_as_bool, "v123", "neither nut nor coin"),
+            "turned round": (name_turned_round, "v123", "names changed places"),
         },
     },
     "radius_std": {
-        "right": {"simulation": std_by_simulation, "projection": std_by_projection, "qr": std_by_qr},
+        "right": {
+            "solving": std_by_solving,
+            "moments": std_by_moments,
+            "simulation": std_by_simulation,
+            "projection": std_by_projection,
+            "qr": std_by_qr,
+        },
         "wrong": {
-            "known centre": (std_known_centre, 2, "centre taken for known"),
-            "variance": (std_variance, 0, "variance for standard deviation"),
-            "one point": (std_one_point, 0, "spread of one point"),
-            "of the centre": (std_of_centre, 0, "centre for radius"),
-            "pseudo-inverse": (std_pinv, 4, "sure of what is not fixed"),
-            "inverse": (std_inverse, 4, "sure of what is not fixed"),
+            "no root": (std_without_root, "v123", None),
+            "of all": (std_of_all, "v123", None),
+            "none": (std_none, "3", "sure of what is not fixed"),
+            "half known": (std_half_known, "2", None),
+            "known centre": (std_known_centre, "v2", "centre taken for known"),
+            "variance": (std_variance, "v123", "variance for standard deviation"),
+            "one point": (std_one_point, "v123", "spread of one point"),
+            "of the centre": (std_of_centre, "v123", "centre for radius"),
+            "pseudo-inverse": (std_pinv, "3", "sure of what is not fixed"),
+            "inverse": (std_inverse, "3", "sure of what is not fixed"),
         },
     },
 }

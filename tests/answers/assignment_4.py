@@ -3,11 +3,12 @@
 # ruff: noqa: ARG001 (a wrong answer may leave out what it is given)
 
 import math
+import statistics
 from functools import cache
-from itertools import permutations
+from itertools import combinations, permutations
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
+from scipy.optimize import linear_sum_assignment, linprog, minimize_scalar
 from scipy.spatial import cKDTree
 
 INF = float("inf")
@@ -73,10 +74,17 @@ def bias_only_left(scans):
     return float(angles[np.argmin(counts)])
 
 
-def bias_by_fine_cells(scans):
-    """Cells much smaller than the noise."""
+def bias_by_large_cells(scans):
+    """Cells as large as the shapes."""
     angles = np.radians(np.arange(-12, 12.01, 0.1))
-    counts = [len(np.unique(np.floor(hits_with(scans, angle)[0] / 0.0005), axis=0)) for angle in angles]
+    counts = [len(np.unique(np.floor(hits_with(scans, angle)[0] / 0.25), axis=0)) for angle in angles]
+    return float(angles[np.argmin(counts)])
+
+
+def bias_by_fine_cells(scans):
+    """Cells smaller than the noise."""
+    angles = np.radians(np.arange(-12, 12.01, 0.1))
+    counts = [len(np.unique(np.floor(hits_with(scans, angle)[0] / 0.001), axis=0)) for angle in angles]
     return float(angles[np.argmin(counts)])
 
 
@@ -373,56 +381,276 @@ def honest_nan(scores, folds):
     return float(honest_general(scores, folds, lambda table, test: best_row(table[:, ~test]), clean=False).mean())
 
 
-# Each wrong answer with the points that it gets of the task's five, and the short name of its fault.
+# --- other right ways, and other wrong ones --------------------------------------------------------------------
+
+
+def blur_of(scans, bias, k=6):
+    hits = hits_with(scans, bias)[0]
+    return cKDTree(hits).query(hits, k)[0][:, 1:].mean()
+
+
+def bias_by_golden_section(scans):
+    """The mean distance to the next five hits, coarsely, then by golden sections."""
+    start = min(np.radians(np.arange(-11, 12)), key=lambda bias: blur_of(scans, bias))
+    bracket = (start - math.radians(1), start, start + math.radians(1))
+    fine = minimize_scalar(lambda bias: blur_of(scans, bias), bracket=bracket, options={"xtol": 1e-3}).x
+    around = fine + np.radians(np.arange(-1, 1.01, 0.1))
+    return float(min(around, key=lambda bias: blur_of(scans, bias)))
+
+
+def bias_by_crowds(scans):
+    """How many hits lie within 4 mm of each other: the most in the sharpest map, a mean over neighbouring angles."""
+    angles = np.radians(np.arange(-11.5, 11.55, 0.1))
+    pairs = [
+        cKDTree(hits_with(scans, angle)[0]).count_neighbors(cKDTree(hits_with(scans, angle)[0]), 0.004)
+        for angle in angles
+    ]
+    smooth = np.convolve(pairs, np.ones(5) / 5, mode="valid")
+    return float(angles[2:-2][smooth.argmax()])
+
+
+def bias_by_bands(scans):
+    """All angles at once, every tenth of a degree, distances to the eight nearest hits; smoothed."""
+    angles = np.radians(np.arange(-11, 11.05, 0.1))
+    costs = np.convolve([blur_of(scans, angle, 8) for angle in angles], np.ones(5) / 5, mode="valid")
+    return angles[2:-2][costs.argmin()].item()
+
+
+def bias_mean_heading(scans):
+    return float(scans.poses[:, 2].mean())
+
+
+def bias_twice(scans):
+    return 2 * bias_by_other_scans(scans) or math.radians(2)
+
+
+def bias_unsigned(scans):
+    """How much, and not which way."""
+    return abs(bias_by_other_scans(scans))
+
+
+def overlap_by_choice(found, true):
+    """One found shape after the other: left alone, or with one that is free."""
+    ours, theirs = [[shape.to_shapely() for shape in some] for some in (found, true)]
+
+    @cache
+    def most(k, free):
+        if k == len(ours):
+            return 0.0
+        return max([most(k + 1, free), *(iou(ours[k], theirs[j]) + most(k + 1, free - {j}) for j in free)])
+
+    largest = max(len(ours), len(theirs))
+    return most(0, frozenset(range(len(theirs)))) / largest if largest else 1.0
+
+
+def overlap_by_areas(found, true):
+    """|a| + |b| - |a and b| below the fraction bar; the table made square with noughts."""
+    n = max(len(found), len(true))
+    if n == 0:
+        return 1
+    table = np.zeros((n, n))
+    for i, a in enumerate(found):
+        for j, b in enumerate(true):
+            both = a.to_shapely().intersection(b.to_shapely()).area
+            table[i, j] = both / (a.to_shapely().area + b.to_shapely().area - both)
+    return sum(table[pair] for pair in zip(*linear_sum_assignment(1 - table), strict=True)) / n
+
+
+def overlap_by_graph(found, true):
+    """All orders of the square table."""
+    n = max(len(found), len(true))
+    pairs = {(i, j): iou(a.to_shapely(), b.to_shapely()) for i, a in enumerate(found) for j, b in enumerate(true)}
+    ways = (sum(pairs.get((i, j), 0.0) for i, j in enumerate(way)) for way in permutations(range(n)))
+    return max(ways) / n if n else 1.0
+
+
+def overlap_mean_of_pairs(found, true):
+    """Over the pairs alone."""
+    pairs = min(len(found), len(true))
+    return best_sum(table_of(with_shapely(iou), found, true)) / pairs if pairs else float(not found and not true)
+
+
+def cost_by_bits(found, true, miss, alarm):
+    """The least cost for each set of true shapes that are taken."""
+    best = {0: 0.0}
+    for place in found:
+        after = {}
+        for taken, cost in best.items():
+            ways = [(taken, alarm)]
+            ways += [(taken | 1 << j, math.dist(place, true[j])) for j in range(len(true)) if not taken >> j & 1]
+            for now, more in ways:
+                after[now] = min(after.get(now, INF), cost + more)
+        best = after
+    return min(cost + miss * (len(true) - taken.bit_count()) for taken, cost in best.items())
+
+
+def cost_by_linear_program(found, true, miss, alarm):
+    """What pairs save, under the rule that nobody stands in two."""
+    F, T = len(found), len(true)
+    alone = miss * T + alarm * F
+    if not F or not T:
+        return alone
+    rules = np.vstack([np.kron(np.eye(F), np.ones(T)), np.kron(np.ones(F), np.eye(T))])
+    saved = distances(found, true).ravel() - miss - alarm
+    return alone + linprog(saved, A_ub=rules, b_ub=np.ones(F + T), bounds=(0, 1)).fun
+
+
+def cost_by_subsets(found, true, miss, alarm):
+    """Each number of pairs, each choice of those who are paired, each order."""
+    F, T = len(found), len(true)
+    costs = [F * alarm + T * miss]
+    for n in range(1, min(F, T) + 1):
+        alone = (F - n) * alarm + (T - n) * miss
+        for ours in combinations(range(F), n):
+            for theirs in permutations(range(T), n):
+                costs.append(alone + sum(math.dist(found[i], true[j]) for i, j in zip(ours, theirs, strict=True)))
+    return min(costs)
+
+
+def cost_squared(found, true, miss, alarm):
+    gain = np.minimum(distances(found, true) ** 2 - miss - alarm, 0.0)
+    return miss * len(true) + alarm * len(found) + gain[linear_sum_assignment(gain)].sum()
+
+
+def cost_alone(found, true, miss, alarm):
+    """Nobody is paired."""
+    return miss * len(true) + alarm * len(found)
+
+
+def cost_free_misses(found, true, miss, alarm):
+    gain = np.minimum(distances(found, true) - miss - alarm, 0.0)
+    rows, columns = linear_sum_assignment(gain)
+    return gain[rows, columns].sum() + alarm * len(found) + miss * (gain[rows, columns] < 0).sum()
+
+
+def honest_by_statistics(scores, folds):
+    """Plain lists and the standard library's exact mean."""
+    rows = [[0.0 if value != value else float(value) for value in row] for row in scores]
+
+    def own(k):
+        others = [m for m, fold in enumerate(folds) if fold != folds[k]]
+        return max(rows, key=lambda row: round(statistics.fmean(row[m] for m in others), 12))[k]
+
+    return statistics.fmean(own(k) for k in range(len(folds)))
+
+
+def honest_by_weights(scores, folds):
+    """Means as a product with weights."""
+    table = np.where(np.isfinite(scores), scores, 0.0)
+    others = (np.asarray(folds)[:, None] != folds).astype(float)
+    means = table @ (others / others.sum(axis=0))
+    first = (means > means.max(axis=0) - 1e-12).argmax(axis=0)
+    return float(np.take_along_axis(table, first[None], axis=0).mean())
+
+
+def honest_by_frames(scores, folds):
+    """Fold by fold, what was learnt kept in a dictionary."""
+    clean = np.array(scores, dtype=float)
+    clean[np.isnan(clean)] = 0
+    choice = {
+        f: int(np.argmax(np.delete(clean, np.flatnonzero(folds == f), axis=1).sum(axis=1).round(12))) for f in folds
+    }
+    return sum(clean[choice[f], k] for k, f in enumerate(folds)) / len(folds)
+
+
+def honest_by_median(scores, folds):
+    return honest_general(scores, folds, lambda table, test: int(np.argmax(np.median(table[:, ~test], axis=1)))).mean()
+
+
+def honest_first(scores, folds):
+    """No choice at all."""
+    return np.nan_to_num(scores)[0].mean()
+
+
+def honest_worst(scores, folds):
+    return honest_general(scores, folds, lambda table, test: int(np.argmin(table[:, ~test].mean(axis=1)))).mean()
+
+
+# Each wrong answer with what it loses (v: the visible tests; 1, 2, ...: hidden parts), and the short name of its fault.
 ANSWERS = {
     "compass_bias": {
-        "right": {"cells": bias_by_cells, "other scans": bias_by_other_scans},
+        "right": {
+            "golden section": bias_by_golden_section,
+            "crowds": bias_by_crowds,
+            "bands": bias_by_bands,
+            "cells": bias_by_cells,
+            "other scans": bias_by_other_scans,
+        },
         "wrong": {
-            "other sign": (bias_other_sign, 0, "sign turned round"),
-            "degrees": (bias_in_degrees, 0, "degrees for radians"),
-            "none": (bias_none, 0, "no bias"),
-            "coarse": (bias_coarse, 0, "steps too coarse"),
-            "only left": (bias_only_left, 0, None),
-            "fine cells": (bias_by_fine_cells, 2, None),
-            "at least one": (bias_at_least_one_degree, 4, "steps too coarse"),
+            "mean heading": (bias_mean_heading, "123", None),
+            "twice": (bias_twice, "v123", None),
+            "unsigned": (bias_unsigned, "v123", None),
+            "other sign": (bias_other_sign, "v123", "sign turned round"),
+            "degrees": (bias_in_degrees, "v123", "degrees for radians"),
+            "none": (bias_none, "v123", "no bias"),
+            "coarse": (bias_coarse, "v123", "steps too coarse"),
+            "only left": (bias_only_left, "v123", None),
+            "large cells": (bias_by_large_cells, "v123", None),
+            "fine cells": (bias_by_fine_cells, "2", "steps too coarse"),
+            "at least one": (bias_at_least_one_degree, "3", "steps too coarse"),
         },
     },
     "overlap_score": {
-        "right": {"trying": overlap_by_trying, "counting": overlap_by_counting},
+        "right": {
+            "choice": overlap_by_choice,
+            "areas": overlap_by_areas,
+            "all orders": overlap_by_graph,
+            "trying": overlap_by_trying,
+            "counting": overlap_by_counting,
+        },
         "wrong": {
-            "twice": (overlap_twice, 1, "overlap counted twice"),
-            "of the true": (overlap_of_true, 1, "share of the true shape"),
-            "of the found": (overlap_of_found, 1, "share of the found shape"),
-            "nearest": (overlap_nearest, 4, "not one-to-one"),
-            "greedy": (overlap_greedy, 4, "greedy pairs"),
-            "free alarms": (overlap_free_alarms, 3, "false alarms are free"),
-            "free misses": (overlap_free_misses, 2, "misses are free"),
-            "empty": (overlap_empty, 4, "nothing right on an empty board"),
-            "divides by none": (overlap_divides, 4, "raises ZeroDivisionError"),
+            "mean of pairs": (overlap_mean_of_pairs, "v3", None),
+            "twice": (overlap_twice, "v123", "overlap counted twice"),
+            "of the true": (overlap_of_true, "v123", "share of the true shape"),
+            "of the found": (overlap_of_found, "v123", "share of the found shape"),
+            "nearest": (overlap_nearest, "2", "not one-to-one"),
+            "greedy": (overlap_greedy, "2", "greedy pairs"),
+            "free alarms": (overlap_free_alarms, "34", "false alarms are free"),
+            "free misses": (overlap_free_misses, "v34", "misses are free"),
+            "empty": (overlap_empty, "4", "nothing right on an empty board"),
+            "divides by none": (overlap_divides, "4", "raises ZeroDivisionError"),
         },
     },
     "map_cost": {
-        "right": {"trying": cost_by_trying, "table": cost_by_table},
+        "right": {
+            "bits": cost_by_bits,
+            "linear program": cost_by_linear_program,
+            "subsets": cost_by_subsets,
+            "trying": cost_by_trying,
+            "table": cost_by_table,
+        },
         "wrong": {
-            "swapped": (cost_swapped, 2, "weights changed places"),
-            "forced": (cost_forced, 2, "everyone is paired"),
-            "nearest": (cost_nearest, 2, "not one-to-one"),
-            "greedy": (cost_greedy, 3, "greedy pairs"),
-            "early": (cost_early, 3, "broken up too early"),
-            "free alarms": (cost_free_alarms, 1, "false alarms are free"),
-            "empty side": (cost_unshaped, 4, "raises ValueError"),
+            "squared": (cost_squared, "v123", None),
+            "alone": (cost_alone, "v123", None),
+            "free misses": (cost_free_misses, "v234", None),
+            "swapped": (cost_swapped, "v34", "weights changed places"),
+            "forced": (cost_forced, "v23", "everyone is paired"),
+            "nearest": (cost_nearest, "123", "not one-to-one"),
+            "greedy": (cost_greedy, "1", "greedy pairs"),
+            "early": (cost_early, "23", "broken up too early"),
+            "free alarms": (cost_free_alarms, "v234", "false alarms are free"),
+            "empty side": (cost_unshaped, "4", "raises ValueError"),
         },
     },
     "honest_score": {
-        "right": {"loop": honest_by_loop, "matrices": honest_by_matrices},
+        "right": {
+            "statistics": honest_by_statistics,
+            "weights": honest_by_weights,
+            "dictionary": honest_by_frames,
+            "loop": honest_by_loop,
+            "matrices": honest_by_matrices,
+        },
         "wrong": {
-            "on the test maps": (honest_on_test, 0, "chosen on the test maps"),
-            "on all maps": (honest_on_all, 0, "chosen on all maps"),
-            "each map": (honest_each_map, 0, "best of each map"),
-            "folds' means": (honest_folds_means, 3, "mean of the folds' means"),
-            "left out": (honest_left_out, 4, "crashes left out"),
-            "last": (honest_last, 4, "last of ties"),
-            "nan": (honest_nan, 4, "nan spreads"),
+            "median": (honest_by_median, "1234", None),
+            "first": (honest_first, "v1234", None),
+            "worst": (honest_worst, "v1234", None),
+            "on the test maps": (honest_on_test, "v1234", "chosen on the test maps"),
+            "on all maps": (honest_on_all, "v1234", "chosen on all maps"),
+            "each map": (honest_each_map, "v1234", "best of each map"),
+            "folds' means": (honest_folds_means, "v2", "mean of the folds' means"),
+            "left out": (honest_left_out, "3", "crashes left out"),
+            "last": (honest_last, "4", "last of ties"),
+            "nan": (honest_nan, "3", "nan spreads"),
         },
     },
 }

@@ -23,7 +23,6 @@ from pathlib import Path
 import numpy as np
 
 import primkit as pk
-
 from primkit.checks.calls import Raised, run
 
 from .make import CLASSES, EQUIVALENT, answers, fresh, mutants
@@ -108,8 +107,6 @@ def fresh_ones(seed, *flags):
 
 def main(half="open", *flags):
     """Print what was not named, and how many were."""
-    if half == "fresh":
-        return fresh_ones(*flags)
     of, counts = checks(), Counter()
     for slip in mutants():
         if slip["half"] == half and slip["name"] not in EQUIVALENT:
@@ -124,4 +121,4 @@ def main(half="open", *flags):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    (fresh_ones if sys.argv[1:2] == ["fresh"] else main)(*sys.argv[1 + (sys.argv[1:2] == ["fresh"]) :])

@@ -29,6 +29,8 @@ from typing import Any
 
 import numpy as np
 
+from ...checks.slips import built, pieces_of
+from ...own_code import call_within
 from .plain_values import pack, stranger
 from .wire import FAMILY, MOST_BYTES, HungUpError, hear, say
 
@@ -87,24 +89,34 @@ def _end(worker: int) -> None:
 
 
 def _answer_calls(line: socket.socket, scope: dict[str, Any]) -> None:
+    edited: Any = None
     with suppress(HungUpError):
         while True:
             wanted, *more = hear(line, None)
             if wanted == "names":
                 say(line, {name: _described(scope[name]) for name in more[0] if name in scope})
+            elif wanted == "edit":
+                edited = None
+                with suppress(Exception):
+                    edited = built(scope[more[0]], more[1])
+                say(line, edited is not None)
             else:
-                said = _called(scope[wanted], *more)
+                if wanted == "edited":
+                    args, seconds = more
+                    more = [(seconds, edited, *args), {}]
+                said = _called(call_within if wanted == "edited" else scope[wanted], *more)
                 too_much = len(pack(said)) > MOST_BYTES
                 say(line, "returned", stranger("result of more than 1 MB"), {}) if too_much else say(line, *said)
 
 
 def _described(value: Any) -> Any:
-    """Return the arguments' names of a function, or the value of what is none."""
+    """Return the arguments' names of a function and its source, or the value of what is none."""
     if not callable(value):
         return "value", value
     try:
         names = inspect.signature(value).parameters.values()
-        return "function", [(each.name, int(each.kind), each.default is not each.empty) for each in names]
+        arguments = [(each.name, int(each.kind), each.default is not each.empty) for each in names]
+        return "function", (arguments, pieces_of(value))
     except (TypeError, ValueError):  # one of those that do not say what they take
         return "function", None
 

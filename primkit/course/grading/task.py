@@ -97,6 +97,11 @@ class Local:
     function: Callable[..., Any]
     remarks: set[str] = field(default_factory=set)
 
+    @property
+    def __wrapped__(self) -> Callable[..., Any]:
+        """What is called: where its source and its arguments' names are read."""
+        return self.function
+
     def afresh(self) -> Local:
         """Return itself: here nothing ends a loop but the person who waits for it."""
         self.remarks = set()

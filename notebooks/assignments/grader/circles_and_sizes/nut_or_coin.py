@@ -28,6 +28,8 @@ PHASES = 12  # turns of a hexagon that are tried, within a sixth of a full turn
 PLAINLY = 1.1  # the wrong outline must miss the points by so much more than the right one
 BENT = 0.0403  # a regular hexagon of reach 1 misses its best circle by this much, root mean square
 NAMES = ("nut", "coin")
+SIZES = (0.02, 0.06)  # m, from the middle to the corners
+LARGE_COIN = 0.45  # noise of the first coin
 EXPLAINED = 1.7  # mean square over spread square: a coin's is 1, that of the nuts here 2.5 and more
 
 
@@ -79,18 +81,23 @@ def clear(points: Floats, spread: float, nut: bool) -> bool:
 def clear_ones(
     rng: np.random.Generator, noise: tuple[Any, Any], share: tuple[float, float]
 ) -> Iterator[tuple[Any, ...]]:
-    """Yield clear nuts and coins by turns, with noise for each of the two, of which a share is seen."""
+    """Yield clear nuts and coins by turns, with noise for each of the two, of which a share is seen.
+
+    The first nut misses its circle by less than the first coin does, in millimetres: no fixed limit parts them.
+    """
     n = 0
     while n < CASES:
-        points, spread = seen(rng, n % 2 == 0, rng.uniform(*noise[n % 2]), rng.uniform(*share))
+        reach = SIZES[n] if n < 2 else rng.uniform(*SIZES)
+        some = (noise[0][0], max(noise[1][1], LARGE_COIN))[n] if n < 2 else rng.uniform(*noise[n % 2])
+        points, spread = seen(rng, n % 2 == 0, reach, some, rng.uniform(*share))
         if clear(points, spread, n % 2 == 0):
             n += 1
             yield points, spread
 
 
-def seen(rng: np.random.Generator, nut: bool, noise: float, share: float) -> tuple[Floats, float]:
+def seen(rng: np.random.Generator, nut: bool, reach: float, noise: float, share: float) -> tuple[Floats, float]:
     """Return points on a share of an outline and their spread; ``noise`` counts in what a nut misses its circle by."""
-    reach, n = rng.uniform(0.02, 0.06), 150
+    n = 150
     place = 6 * ((np.arange(n) + 0.5) / n * share + rng.random())  # in sixths of the outline
     turn, corner = rng.uniform(0, TURN), np.floor(place)
     if nut:

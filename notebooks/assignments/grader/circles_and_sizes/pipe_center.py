@@ -87,13 +87,16 @@ def noisy_arcs(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
 
 
 def few_hits(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
-    """Yield two points, which is enough, and fewer, which is not."""
+    """Yield two points, which is enough, and fewer, which is not.
+
+    The two lie about as far from the robot: only then is the far one of both circles plainly the pipe.
+    """
     yield np.array([(0.3, -0.06), (0.3, 0.06)]), 0.1
     yield np.array([(0.3, 0.1)]), 0.1
     yield np.array([(0.3, 0.1)] * 3), 0.1
     yield np.zeros((0, 2)), 0.1
     for _ in range(10):
-        points, radius = pipe(rng, (40, 120), 0.0)
+        points, radius = pipe(rng, (80, 120), 0.0)
         yield points[[0, -1]], radius
 
 

@@ -9,7 +9,7 @@ Out: marks.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ from scipy.optimize import linear_sum_assignment
 
 from primkit.checks.judges import number
 
-from ..parts import INF, Fault, task
+from ..parts import EDGE, INF, Fault, task
 
 Floats = NDArray[np.float64]
 
@@ -95,20 +95,31 @@ def near_each_other(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
             yield args
 
 
+def plain_pairs(draw: Callable[[], tuple[Any, ...]]) -> Iterator[tuple[Any, ...]]:
+    """Yield drawn boards on which the nearest pair first is right: whom to pair is another part's question."""
+    n = 0
+    while n < CASES:
+        args = draw()
+        if abs(greedy_cost(*args) - least_cost(*args)) < EDGE:
+            n += 1
+            yield args
+
+
 def better_apart(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     """Yield as many found as true centres; some are so far apart that a miss and a false alarm cost less."""
     yield np.array([[0.5, 0.0], [0.0, 0.1]]), np.array([[-0.5, 0.0], [0.0, 0.0]]), 0.2, 0.2
-    for _ in range(CASES):
-        yield rng.uniform(-0.5, 0.5, (4, 2)), rng.uniform(-0.5, 0.5, (4, 2)), 0.15, 0.15
+    yield from plain_pairs(lambda: (rng.uniform(-0.5, 0.5, (4, 2)), rng.uniform(-0.5, 0.5, (4, 2)), 0.15, 0.15))
 
 
 def unlike_weights(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     """Yield different numbers of centres, with one weight several times the other."""
     yield np.array([[0.0, 0.1]]), np.array([[0.0, 0.0], [0.4, 0.4]]), 0.3, 0.05
-    for _ in range(CASES):
-        count = rng.permutation([2, 4])
-        weights = rng.permutation([0.3, 0.1]).tolist()
-        yield rng.uniform(-0.4, 0.4, (count[0], 2)), rng.uniform(-0.4, 0.4, (count[1], 2)), *weights
+
+    def draw() -> tuple[Any, ...]:
+        count, weights = rng.permutation([2, 4]), rng.permutation([0.3, 0.1]).tolist()
+        return rng.uniform(-0.4, 0.4, (count[0], 2)), rng.uniform(-0.4, 0.4, (count[1], 2)), *weights
+
+    yield from plain_pairs(draw)
 
 
 def nobody(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:

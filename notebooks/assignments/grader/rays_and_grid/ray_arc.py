@@ -109,6 +109,7 @@ def near_side(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     """Yield beams from outside that meet the wall's near side, or pass the whole circle by."""
     yield np.array([0.3, 0.5]), DOWN, *WALL
     yield np.array([0.5, 0.5]), DOWN, *WALL  # beside
+    yield np.array([0.0, 0.05]), np.array([1.0, 0.0]), *WALL  # the far side is built, too
     wanted = lambda inside, both, on: not inside and (not both or (both[0] > 0 and on[0]))  # noqa: E731
     yield from arcs(rng, wanted, **UPPER)
 
@@ -135,7 +136,7 @@ def inside_or_behind(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     yield np.array([0.3, 0.05]), UP, *WALL
     yield np.array([0.3, 0.5]), UP, *WALL  # behind
     yield from arcs(rng, lambda inside, both, on: inside and both and any(on), **UPPER)
-    yield from arcs(rng, lambda inside, both, on: both and not inside and any(on), **UPPER, ahead=False)
+    yield from arcs(rng, lambda inside, both, on: both and not inside and both[1] < 0 and any(on), **UPPER, ahead=False)
 
 
 GOING_ROUND = "Bearings begin anew after a full turn, a wall does not. How far is it from start to hit, going round?"
