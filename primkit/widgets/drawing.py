@@ -34,7 +34,10 @@ SVG_FONT = "font-family='DejaVu Sans, Verdana, sans-serif'"
 WIDEST_PICTURE = 860  # px: what fits beside a notebook's margin on most screens; a wider picture is shown smaller
 PIXEL_TIE = 1e-6  # px: lifts 0.25 and its like over the edge, where rounding could go either way
 
-LETTERS, MARKS = 4.5, 3.0  # least contrasts to white, as WCAG 2 has them; areas and what is pale on purpose have less
+LETTER_CONTRAST, MARK_CONTRAST = (
+    4.5,
+    3.0,
+)  # least contrasts to white, as WCAG 2 has them; areas and what is pale on purpose have less
 LEGEND_LEFT, LEGEND_ROW = 22, 22  # px
 ENTRY = re.compile(r'<g class="entry" transform="[^"]*">(.*?)</g>')
 
@@ -125,7 +128,7 @@ class Frame:
         """Draw a circle; ``fill`` is the opacity inside. Only for frames with the same scale both ways."""
         ((x, y),) = self.at(center)
         inside = f'fill="{color}" fill-opacity="{fill:g}"' if fill else 'fill="none"'
-        line, color = f' stroke-dasharray="{dash}"' if dash else "", legible(color, MARKS)
+        line, color = f' stroke-dasharray="{dash}"' if dash else "", legible(color, MARK_CONTRAST)
         r = _n(abs(radius) * self.scale[0])
         return f'<circle cx="{x:g}" cy="{y:g}" r="{r}" {inside} stroke="{color}" stroke-width="{width:g}"{line}/>'
 
@@ -285,8 +288,8 @@ def size_of(svg: str) -> tuple[int, int]:
 
 def path(moves: str, *, fill: str = "none", stroke: str = "", **look: str | float) -> str:
     """Return a path with its look: ``stroke_width=2`` becomes ``stroke-width="2"``; what is empty is left out."""
-    fill = fill if "fill_opacity" in look else legible(fill, MARKS)
-    line: dict[str, str | float] = {"stroke": legible(stroke, MARKS)}
+    fill = fill if "fill_opacity" in look else legible(fill, MARK_CONTRAST)
+    line: dict[str, str | float] = {"stroke": legible(stroke, MARK_CONTRAST)}
     given = {name.replace("_", "-"): value for name, value in (line | look).items() if value != ""}
     written = "".join(f' {k}="{v if isinstance(v, str) else f"{v:g}"}"' for k, v in given.items())
     return f'<path d="{moves}"{written} fill="{fill}"/>' if moves else ""
@@ -305,7 +308,7 @@ def words_at(
     turned: bool = False,
 ) -> str:
     """Return words at a pixel; ``rim`` puts white around the letters, ``turned`` writes them upwards."""
-    look = f'font-size="{size:g}" fill="{legible(color, LETTERS)}"'
+    look = f'font-size="{size:g}" fill="{legible(color, LETTER_CONTRAST)}"'
     look += f' text-anchor="{anchor}"' if anchor != "start" else ""
     look += ' font-weight="bold"' if bold else ""
     look += ' stroke="white" stroke-width="3" paint-order="stroke"' if rim else ""
