@@ -25,8 +25,8 @@ from .evaluation import evaluate as evaluate, match as match
 from .report import Report as Report
 
 from .driving.mapper import Mapper as Mapper
-
 from .driving.align import align as align, Alignment as Alignment
+from .driving.steady import steady as steady
 from .driving import explore as explore, Exploration as Exploration
 from .driving.scripted import scripted_route as scripted_route
 from .formats import load_world as load_world, save_world as save_world

@@ -47,6 +47,7 @@ def map_recording(arguments: argparse.Namespace) -> None:
     """Map what a robot recorded, print what was found and how sure that is, and write the picture and the map."""
     import numpy as np
 
+    from ..driving.steady import steady
     from ..formats import load_scans, save_found
     from ..grid import Grid
     from ..pipeline import find_shapes
@@ -63,8 +64,11 @@ def map_recording(arguments: argparse.Namespace) -> None:
         said += ", without poses: the first alone is mapped; --only A:B takes those of a robot that stands still"
     say(f"Scans  {said}")
     grid = Grid(_cell(scans) if arguments.cell is None else arguments.cell / 1000)
-    grid.add(scans)
-    say(f"LiDAR  {scans.hits.sum()} hits on {len(grid)} cells of {1000 * grid.resolution:g} mm")
+    still = steady(scans, grid.resolution)
+    grid.add(still)
+    n_hits, n_moved = still.hits.sum(), scans.hits.sum() - still.hits.sum()
+    moved = f"; {count(n_moved, 'hit')} on what moved left out" if n_moved else ""
+    say(f"LiDAR  {n_hits} hits on {len(grid)} cells of {1000 * grid.resolution:g} mm{moved}")
     out, start = make_folder(arguments.out), time.process_time()
     found = find_shapes(grid, settings=METHODS[arguments.settings.upper()], rng=arguments.seed)
     seconds = time.process_time() - start
