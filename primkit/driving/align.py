@@ -14,7 +14,7 @@ Out: ``Alignment``: ``.scans``, the same scans from their mended poses, ``.covar
 >>> told = Scans(odometry(true, slip=0.03, turn=2.0, rng=1), seen.angles, seen.ranges, seen.inside)
 >>> aligned = align(told)
 >>> [round(1000 * float(np.hypot(*(scans.poses - true)[:, :2].T).max())) for scans in (told, aligned.scans)]
-[110, 1]
+[30, 1]
 
 1. Scan matching places each scan on the map of those before it: near enough for shapes to be found.
 2. The shapes and walls in the map of all scans are the landmarks: lines n(a).p = d and circles |p - c| = r.

@@ -31,10 +31,10 @@ if TYPE_CHECKING:
 
 NEWTON_STEPS, STILL = 5, 0.0001  # the last step moves no number farther
 LEAST_HIT_STD = 0.00005  # of a hit from its landmark
-GRAZING = 0.3  # noise that a hit has across the beam, in noises along it: a beam that grazes ends anywhere
+GRAZING_NOISE = 0.3  # noise that a hit has across the beam, in noises along it: a beam that grazes ends anywhere
 DRIFT_STD = 0.05, np.radians(20.0)  # of s and g, before anything is known
 HALF_AXLE, LEAST_WAY = 0.05, 1e-5  # turns on the spot slip, too
-COLUMNS_AT_ONCE, SIGNS, RUN = 1000, 24, 8
+COLUMNS_AT_ONCE, SIGN_VECTORS, RUN = 1000, 24, 8
 LEAST_VARIANCE = 1e-10
 
 
@@ -116,7 +116,7 @@ def hit_rows(state: State, hits: Hits) -> tuple[Floats, csr_array]:
     off[~on_line] = distance - circle[:, 2]
     slope[~on_line] = np.column_stack([-normal[~on_line], -np.ones(len(circle))])
     turn = hits.reach * (normal[:, 1] * beam[:, 0] - normal[:, 0] * beam[:, 1])
-    across = np.einsum("ij,ij->i", normal, beam) ** 2 + GRAZING**2
+    across = np.einsum("ij,ij->i", normal, beam) ** 2 + GRAZING_NOISE**2
     std = np.sqrt(state.variance[0] * across + LEAST_HIT_STD**2)
     values = np.column_stack([normal, turn, slope]) / std[:, None]
     first = np.where(on_line, 2 * hits.landmark, 2 * n_lines + 3 * (hits.landmark - n_lines))
@@ -186,9 +186,9 @@ def variances(state: State, hits: Hits, steps: Floats) -> tuple[Floats, float]:
     (off, rows), (slipped, odometry) = hit_rows(state, hits), step_rows(state, steps)
     n = 2 * len(steps)
     groups = [(off, rows), (slipped[:n], odometry[:n]), (slipped[n:-2], odometry[n:-2])]
-    signs = np.random.default_rng(0).choice([-1.0, 1.0], (rows.shape[1], SIGNS))
+    signs = np.random.default_rng(0).choice([-1.0, 1.0], (rows.shape[1], SIGN_VECTORS))
     solved = _factors(rows, odometry).solve(signs)
-    free = [part.shape[0] - float((solved * (part.T @ (part @ signs))).sum()) / SIGNS for _, part in groups]
+    free = [part.shape[0] - float((solved * (part.T @ (part @ signs))).sum()) / SIGN_VECTORS for _, part in groups]
     left = np.array([float(part @ part) for part, _ in groups]) / np.maximum(free, 1.0)
     runs = off[: len(off) // RUN * RUN].reshape(-1, RUN).sum(axis=1)
     together = float(runs @ runs) / RUN / max(1.0, len(runs) - (len(off) - free[0]))
