@@ -18,7 +18,6 @@ import numpy as np
 from tests.test_assignments import ANSWERS, TASKS, lost_parts, visible_points
 
 FIRST_SEED = 1000  # far from those that anything was tried with
-PART_SECONDS = 60.0
 
 
 def drawn(check, seed):
@@ -55,7 +54,7 @@ def surprises(name, seeds):
     for seed in seeds:
         task = with_seed(TASKS[name], seed)
         for kind, each, function, loses in answers_of(name):
-            lost = lost_parts(task.marked(function, seconds=PART_SECONDS), visible[each])
+            lost = lost_parts(task.marked(function), visible[each])
             if lost != loses:
                 found.setdefault((kind, each), Counter())[lost] += 1
     return found

@@ -5,7 +5,7 @@ In:  a half of the slips, and whether the check may read the student's code; whe
 Out: for each slip "named", "missed" or "right".
 
     python -m tests.slips.named [open | "held out"] [unread]
-    python -m tests.slips.named fresh SEED [unread]
+    python -m tests.slips.named fresh SEED [unread | afar]
 
 Of fresh slips none is taken out by hand: one that passes is run beside the right answer on many inputs, and counts as
 equivalent only where both return the same on all of them.
@@ -18,6 +18,7 @@ import linecache
 import re
 import sys
 from collections import Counter
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,7 @@ import numpy as np
 import primkit as pk
 from primkit.checks.calls import Raised, run
 
+from ..test_judge import afar, remote
 from .make import CLASSES, EQUIVALENT, answers, fresh, mutants
 
 FRESH_EACH = 2  # of a task
@@ -54,10 +56,11 @@ def built(slip, *, unread=False):
     return scope[slip["task"]]
 
 
-def verdict(slip, checks, *, unread=False):
-    """Return "right", "named" or "missed", and what was said."""
-    function = built(slip, unread=unread)
-    answers = [check(function) for check in checks[slip["task"]]]
+def verdict(slip, checks, *, unread=False, far=False):
+    """Return "right", "named" or "missed", and what was said; far: of a function in another process."""
+    function, task = built(slip, unread=unread), slip["task"]
+    with afar(**{task: function}) if far else nullcontext() as workers:
+        answers = [check(remote(workers, task) if far else function) for check in checks[task]]
     says = "\n".join(dict.fromkeys(answer.says for answer in answers if not answer.right))
     if not says:
         return "right", ""
@@ -92,7 +95,9 @@ def fresh_ones(seed, *flags):
     """Print how many fresh slips of each task are named, and what those are that pass."""
     of, counts = checks(), Counter()
     for slip in fresh(seed, FRESH_EACH):
-        word, says = verdict(slip, of, unread="unread" in flags)
+        if "afar" in flags and len(of[slip["task"]]) == 1:
+            continue  # a lesson's task
+        word, says = verdict(slip, of, unread="unread" in flags, far="afar" in flags)
         if word == "right":
             same, inputs = same_on(slip, of)
             word = "equivalent" if same == inputs else "passes"
