@@ -287,6 +287,13 @@ def test_a_lesson_keeps_the_rule(lesson, rule):
     assert rule(lesson) == []
 
 
+def test_a_lesson_and_its_picture_count_the_same_ghosts():
+    cell = next(cell for cell in code_cells(load("08_drive_it_yourself")) if "plot_change" in source(cell))
+    printed = re.findall(r"\d+", "".join(line for output in cell["outputs"] for line in output.get("text", [])))
+    (html,) = outputs(cell, "text/html")
+    assert re.findall(r"(\d+) of \d+ points are ghosts", "".join(html)) == printed
+
+
 # --- each rule is shown a lesson with one thing broken ----------------------------------------------------------
 
 

@@ -9,7 +9,7 @@ Slider: arc, noise, seed, show
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 
 import numpy as np
 
@@ -67,6 +67,7 @@ def draw_arcs(arc: int, noise: float, seed: int, show: str) -> str:
         TRUE_CIRCLE,
         title=f"True 100 mm: Kasa {_millimetres(fits['Kasa'])}, Taubin {_millimetres(fits['Taubin'])}",
         says=f"{arc} degrees, noise {noise:g} mm, true radius {_millimetres(TRUE_CIRCLE)}: {said}.",
+        legend=fits,  # all of them, so that the picture keeps its size
     )
 
 
@@ -75,16 +76,21 @@ def show_circles(points: Floats, circles: Mapping[str, Circle | XYR | None], tru
     fits = {name: Circle(c[:2], c[2]) if isinstance(c, tuple) else c for name, c in circles.items()}
     said = ", ".join(f"{name} {_millimetres(circle)}" for name, circle in fits.items())
     says = f"{len(points)} points; true radius {_millimetres(truth)}: {said}."
-    return Picture(_drawn(points, fits, truth, title=title, says=says), f"Circles among points: {', '.join(fits)}")
+    return Picture(
+        _drawn(points, fits, truth, title=title, says=says, legend=fits), f"Circles among points: {', '.join(fits)}"
+    )
 
 
-def _drawn(points: Floats, fits: Mapping[str, Circle | None], truth: Circle, *, title: str, says: str) -> str:
-    """Draw the true circle, the fits that are there, the points, and what is what."""
+def _drawn(
+    points: Floats, fits: Mapping[str, Circle | None], truth: Circle, *, title: str, says: str, legend: Container[str]
+) -> str:
+    """Draw the true circle, the fits that are there, the points, and a legend of these names."""
     x, y = truth.center.tolist()
     frame = square_frame((x, y), ARC_VIEW)
     outlines, centers, signs = [], [], [("true", PALE, "line")]
     for name, color, marker, width, dash in CIRCLE_FITS:
-        signs.append((name, color, marker))
+        if name in legend:
+            signs.append((name, color, marker))
         if circle := fits.get(name):
             outlines.append(frame.circle(circle.center, circle.radius, color, width, dash))
             centers.append(frame.points([circle.center], color, marker, 9))
