@@ -148,11 +148,11 @@ def as_lidar(lidar: Lidar | None, scale: float = 1.0, *, around: bool = False) -
 
 # Each figure with its source; what no source was found for is marked so, and stands as in an ideal sensor.
 RPLIDAR_A1 = Lidar(
-    beams=360,  # Slamtec, data sheet of the A1M8, rev. 1.0 (2016): 360 samples at 5.5 turns a second, 1 degree
+    beams=360,  # Slamtec, data sheet of the A1M8 (2016): 360 samples at 5.5 turns a second, 1 degree
     range_min=0.15,  # the same: 0.15 - 12 m, white objects
     range_max=12.0,
     period=1 / 5.5,  # s, the same
-    clockwise=True,  # Slamtec, interface protocol: angles grow clockwise; the ROS driver turns them round
+    clockwise=True,  # as Slamtec's driver rplidar_ros tells, which turns the angles round
     range_step=0.00025,  # the same: distances come in quarters of a millimetre
     noise_std=0.0,  # NOT FOUND: the data sheet tells only a resolution, below 1 % of the distance
 )
@@ -162,5 +162,5 @@ LDS_01 = Lidar(
     range_max=3.5,
     period=0.2,  # s, the same: 300 turns a minute
     range_step=0.001,  # Robotis, hls_lfcd_lds_driver: whole millimetres; by default in counter-clockwise order
-    noise_std=0.01,  # Robotis, turtlebot3_description for Gazebo; the e-Manual: +-10 mm below 0.5 m, +-3.5 % beyond
+    noise_std=0.01,  # turtlebot3_description for Gazebo, in copies; e-Manual: +-10 mm below 0.5 m, +-3.5 % beyond
 )

@@ -149,6 +149,8 @@ def test_of_two_lasers_one_must_be_told(tmp_path, kind):
     path = bag.close()
     rule = "must be read by one topic of laser scans at a time, got /front, /rear: tell which one as topic"
     assert refusal(pk.load_scans, path) == f"{path.name}: {rule}"
+    sentence = f"{path.name}: must hold the topic '/scann', got /front, /rear"
+    assert refusal(pk.load_scans, path, topic="/scann") == sentence
     assert pk.load_scans(path, topic="/rear").ranges.tolist() == [[2.0] * 4]  # no odometry: it stands still
 
 

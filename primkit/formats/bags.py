@@ -23,7 +23,7 @@ import numpy as np
 
 from ..arguments import Floats, doubt, limit, short
 from .files import naming, size_of
-from .recordings import RECORDING_LIMIT, Sweep, the_one
+from .recordings import RECORDING_LIMIT, Sweep, check_topics, the_one
 
 INSTALL = "python -m pip install rosbags"
 SCAN, ODOMETRY = "sensor_msgs/msg/LaserScan", "nav_msgs/msg/Odometry"
@@ -40,6 +40,7 @@ def read_bag(path: Path, topics: tuple[str, ...]) -> list[Sweep]:
         found: dict[str, dict[str, list[Any]]] = defaultdict(lambda: defaultdict(list))
         for topic, kind, message in _messages(path):
             found[kind][topic].append(message)
+        check_topics(topics, [topic for kind in (SCAN, ODOMETRY) for topic in found[kind]])
         laser = the_one(found[SCAN], topics, "topic of laser scans")
         odometry = the_one(found[ODOMETRY], topics, "topic of odometry")
         if laser is None:

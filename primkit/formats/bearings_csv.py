@@ -20,7 +20,7 @@ import numpy as np
 
 from ..arguments import short
 from ..lidar import Lidar
-from .files import LINE_LIMIT, bounded_read, lines_of, naming
+from .files import bounded_read, lines_of, naming
 from .recordings import Sweep
 
 COLUMNS = {"angle": "angle|theta|bearing", "distance": "dist|range", "valid": "valid"}
@@ -48,7 +48,6 @@ def _cells(lines: list[str]) -> list[list[str]]:
     """Return the cells of each line, whatever parts them; at least of the first."""
     first = lines[0] if lines else ""
     mark = max(",;\t", key=first.count)
-    csv.field_size_limit(LINE_LIMIT)
     try:
         return [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=mark)] or [[]]
     except csv.Error:

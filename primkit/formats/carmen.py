@@ -23,7 +23,7 @@ import numpy as np
 from ..arguments import Floats, limit, short
 from ..lidar import Lidar
 from .files import bounded_read, lines_of, naming
-from .recordings import RECORDING_LIMIT, Sweep, the_one
+from .recordings import RECORDING_LIMIT, Sweep, check_topics, the_one
 
 SICK_MAX = 81.83  # m: from here on, the scanners of these logs tell errors in the place of distances
 LASERS = ("FLASER", "ROBOTLASER1")
@@ -37,6 +37,7 @@ def read_carmen(path: Path, topics: tuple[str, ...], lidar: Lidar | None) -> lis
             data = _unzipped(data)
         lines = [(number, line.split()) for number, line in enumerate(lines_of(data), start=1)]
         found = {words[0].decode("ascii", "replace") for _, words in lines if words}
+        check_topics(topics, found & set(LASERS))
         laser = the_one(found & set(LASERS), topics, "laser")
         sweeps = []
         for number, words in lines:

@@ -123,3 +123,11 @@ def numbers(words: Any, n: int, name: str) -> list[float]:
     if len(values) != n or not np.isfinite(values).all() or np.abs(values).max(initial=0.0) > 1e9:
         raise ValueError(f"{name} must be {n} numbers, got {short(words)}")
     return values
+
+
+def lengths(words: Any, n: int, name: str) -> list[float]:
+    """Return n lengths above zero."""
+    values = numbers(words, n, name)
+    if not min(values) > 0:
+        raise ValueError(f"{name} must be {n} numbers > 0, got {short(words)}")
+    return values

@@ -53,6 +53,13 @@ def as_scans(sweeps: Sequence[Sweep], lidar: Lidar | None = None) -> Scans:
     return Scans(poses, angles, ranges, np.zeros(len(sweeps), dtype=bool))
 
 
+def check_topics(told: Iterable[str], known: Iterable[str]) -> None:
+    """Refuse a topic that the file does not hold: another one would be read in its place."""
+    if strange := sorted(set(told) - set(known)):
+        got = short(", ".join(sorted(known)) or "none").strip("'")
+        raise ValueError(f"must hold the topic {short(strange[0])}, got {got}")
+
+
 def the_one(names: Iterable[str], told: Sequence[str], what: str) -> str | None:
     """Return which of several sources to read: the only one, or the one that is told; None where there is none.
 

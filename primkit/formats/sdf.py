@@ -20,7 +20,7 @@ import numpy as np
 from ..arguments import Floats, limit
 from ..world import World
 from .files import bounded_read, naming
-from .plans import DEEPEST_NODE, MOST_SOLIDS, Solid, moved, numbers, plan, turned
+from .plans import DEEPEST_NODE, MOST_SOLIDS, Solid, lengths, moved, numbers, plan, turned
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -69,13 +69,15 @@ def _read_geometry(element: Element, way: Floats, solids: list[Solid], passed_ov
     """Take in the geometry of a collision or a visual."""
     for shape in element.iterfind("geometry/*"):
         if shape.tag == "box":
-            solids.append(Solid("box", tuple(_lengths(shape, "size", 3)), way))
+            solids.append(Solid("box", tuple(lengths((shape.findtext("size") or "").split(), 3, "size")), way))
         elif shape.tag == "cylinder":
-            (radius,), (length,) = _lengths(shape, "radius", 1), _lengths(shape, "length", 1)
+            (radius,), (length,) = (lengths([shape.findtext(name)], 1, name) for name in ("radius", "length"))
             solids.append(Solid("cylinder", (radius, radius, length), way))
         elif shape.tag == "polyline":
             base = np.array([numbers((point.text or "").split(), 2, "point") for point in shape.iterfind("point")])
-            solids.append(Solid("prism", (0.0, 0.0, _lengths(shape, "height", 1)[0]), way, base.reshape(-1, 2)))
+            solids.append(
+                Solid("prism", (0.0, 0.0, *lengths([shape.findtext("height")], 1, "height")), way, base.reshape(-1, 2))
+            )
         else:
             passed_over[shape.tag[:40]] += 1
 
@@ -91,11 +93,3 @@ def _way(element: Element) -> Floats:
     roll, pitch, yaw = np.radians(values[3:]) if pose.get("degrees") in ("true", "1") else values[3:]
     turn = turned((0, 0, 1), yaw) @ turned((0, 1, 0), pitch) @ turned((1, 0, 0), roll)
     return moved(values[:3], turn)
-
-
-def _lengths(element: Element, name: str, n: int) -> list[float]:
-    """Return n lengths above zero of an element's part."""
-    values = numbers((element.findtext(name) or "").split(), n, name)
-    if not min(values) > 0:
-        raise ValueError(f"{name} must be {n} numbers > 0, got {min(values):g}")
-    return values

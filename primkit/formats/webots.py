@@ -26,7 +26,7 @@ from ..arguments import Floats, limit, short
 from ..shapes import Circle, Polygon
 from ..world import World
 from .files import bounded_read, naming, write_atomically
-from .plans import DEEPEST_NODE, MOST_SOLIDS, Solid, arena, moved, numbers, plan, turned
+from .plans import DEEPEST_NODE, MOST_SOLIDS, Solid, arena, lengths, moved, numbers, plan, turned
 
 WORD = re.compile(r'#[^\n]*|[\s,]+|("(?:[^"\\]|\\.)*"|[{}\[\]]|[^\s,{}\[\]"#]+)')
 PRIMITIVE = re.compile(r'"|[-+.]?\d|(TRUE|FALSE|NULL)$')
@@ -186,13 +186,13 @@ class _Reader:
     def _read_floor(self, node: Node, way: Floats) -> None:
         walled = node[""] == "RectangleArena"
         default = (1, 1) if walled else (10, 10)
-        width, depth = _lengths(node.get("floorSize" if walled else "size", default), 2, "the floor's size")
+        width, depth = lengths(node.get("floorSize" if walled else "size", default), 2, "the floor's size")
         middle = not np.abs(way[:2, 3]).any() and bool((np.abs(way[:2, :2]).max(axis=0) > 1 - 1e-9).any())
         if width == depth and middle and (walled or self.board is None):
             self.board = width, walled
         elif walled:
             thick, high = (
-                _lengths(node.get(f, [v]), 1, f)[0] for f, v in (("wallThickness", 0.01), ("wallHeight", 0.1))
+                lengths(node.get(f, [v]), 1, f)[0] for f, v in (("wallThickness", 0.01), ("wallHeight", 0.1))
             )
             self.solids += arena(width, depth, way @ Y_UP.T if self.y_up else way, thick, high)
 
@@ -201,7 +201,7 @@ class _Reader:
         if size is None:
             self.passed_over[f"{node['']} without a size"] += 1
             return
-        size = _lengths(size, 3, "size")
+        size = lengths(size, 3, "size")
         if node[""] == "Wall":  # it stands on its origin
             up = 1 if self.y_up else 2
             way = way @ moved([size[k] / 2 if k == up else 0.0 for k in range(3)], np.eye(3))
@@ -211,9 +211,9 @@ class _Reader:
         """Take in a box, a cylinder or a prism; False if it is none, or tells no size."""
         kind = node[""]
         if kind == "Box" and "size" in node:
-            self.solids.append(Solid("box", tuple(_lengths(node["size"], 3, "size")), way))
+            self.solids.append(Solid("box", tuple(lengths(node["size"], 3, "size")), way))
         elif kind == "Cylinder" and {"radius", "height"} <= set(node):
-            (radius,), (length,) = (_lengths(node[field], 1, field) for field in ("radius", "height"))
+            (radius,), (length,) = (lengths(node[field], 1, field) for field in ("radius", "height"))
             self.solids.append(Solid("cylinder", (radius, radius, length), way @ Y_UP.T if self.y_up else way))
         elif kind == "IndexedFaceSet" and not self.y_up:
             points = (node.get("coord") or [{}])[0]
@@ -228,11 +228,3 @@ class _Reader:
         else:
             return False
         return True
-
-
-def _lengths(words: Any, n: int, name: str) -> list[float]:
-    """Return n lengths above zero."""
-    values = numbers(words, n, name)
-    if not min(values) > 0:
-        raise ValueError(f"{name} must be {n} numbers > 0, got {short(words)}")
-    return values
