@@ -15,6 +15,7 @@ import tracemalloc
 import warnings
 import zipfile
 from pathlib import Path
+from queue import SimpleQueue
 
 import numpy as np
 import pytest
@@ -460,15 +461,17 @@ def test_r16_what_outlives_nbgrader_does_not_keep_it_waiting(tmp_path, monkeypat
     from primkit.course import running
     from primkit.course.course import Course
 
-    monkeypatch.setattr(running, "_environment", lambda _course: {**os.environ, "PYTHONPATH": str(tmp_path)})
-    code = (
-        "import subprocess, sys\nprint('said')\n"
-        "subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(30)'])\n"
-        "class NbGraderApp:\n    launch_instance = clear_instance = staticmethod(lambda *words: None)"
+    app = (
+        "import subprocess\n"
+        "class NbGraderApp:\n"
+        "    def launch_instance(words):\n"
+        "        print('said')\n"
+        "        subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(30)'])"
     )
-    (tmp_path / "nbgrader" / "apps").mkdir(parents=True)
-    for name, source in {"__init__": "", "apps/__init__": "", "apps/nbgraderapp": code}.items():
-        (tmp_path / "nbgrader" / f"{name}.py").write_text(source)
+    of_nbgrader = "from nbgrader.apps.nbgraderapp import NbGraderApp"
+    assert of_nbgrader in running.NURSERY
+    monkeypatch.setattr(running, "NURSERY", running.NURSERY.replace(of_nbgrader, app))
+    monkeypatch.setattr(running, "IDLE", SimpleQueue())
     start = time.monotonic()
     done = running.nbgrader(Course(tmp_path), "autograde")
     assert (done.code, done.log.strip()) == (0, "said")
