@@ -28,7 +28,7 @@ SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32")
 SYSTEM_SETTINGS = ("ld.so.cache", "ld.so.conf", "ld.so.conf.d", "alternatives", "fonts", "localtime", "mime.types")
 TEMPORARY_BYTES = 2**28  # that /tmp and /dev/shm may hold, each
 # The places that hold all these are file systems in memory, without a limit: nothing more may be written there.
-READ_ONLY = ("--remount-ro", "/dev", "--remount-ro", "/")
+SEALED = ("--remount-ro", "/dev", "--remount-ro", "/")
 BY_OTHERS = "PRIMKIT_CONFINED_BY"  # a variable that names what confines the whole grading: "a container"
 UNPROTECTED = "unprotected: no wall stands between a student's code and your files"
 UNCOUNTED = "uncounted: root may start any number of processes; grade as another user, or allow control groups"
@@ -40,7 +40,7 @@ def bubblewrap_works() -> bool:
     """Tell whether bubblewrap is there and may do what is asked of it: Ubuntu 24.04 must be told to allow it."""
     if not sys.platform.startswith("linux") or shutil.which("bwrap") is None:
         return False
-    words = [*_walls(PACKAGE), *READ_ONLY, sys.executable, "-c", "import numpy"]
+    words = [*_walls(PACKAGE), *SEALED, sys.executable, "-c", "import numpy"]
     return subprocess.run(words, capture_output=True, check=False, timeout=60).returncode == 0
 
 
@@ -83,7 +83,7 @@ def processes_are_limited() -> bool:
 def walls(scratch: Path, library: Path, hidden: Sequence[Path] = ()) -> list[str]:
     """Return the words before a kernel's command: its own folders and no others, and the library from there."""
     own = [word for name in OWN_FOLDERS for word in ("--bind", str(scratch / name), str(scratch / name))]
-    return [*_walls(library, hidden), *own, *READ_ONLY, "--chdir", str(scratch / "work")]
+    return [*_walls(library, hidden), *own, *SEALED, "--chdir", str(scratch / "work")]
 
 
 def _walls(library: Path, hidden: Sequence[Path] = ()) -> list[str]:
