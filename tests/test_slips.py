@@ -19,7 +19,7 @@ from tests.test_judge import afar, needs_fork, remote
 CHECKS = named.checks()
 MUTANTS = make.mutants()
 LESSONS = {task.name for task in pk.checks.TASKS}
-OPEN = [slip for slip in MUTANTS if slip["half"] == "open" and slip["task"] in LESSONS]
+OPEN = [slip for slip in MUTANTS if slip["half"] == "open" and slip["task"] in LESSONS][::3]  # all: tests.slips.named
 TO_NAME = 0.9
 
 
