@@ -162,5 +162,5 @@ LDS_01 = Lidar(
     range_max=3.5,
     period=0.2,  # s, the same: 300 turns a minute
     range_step=0.001,  # Robotis, hls_lfcd_lds_driver: whole millimetres; by default in counter-clockwise order
-    noise_std=0.01,  # turtlebot3_description for Gazebo, in copies; e-Manual: +-10 mm below 0.5 m, +-3.5 % beyond
+    noise_std=0.01,  # turtlebot3_description, seen in copies; the e-Manual: +-10 mm below 0.5 m, +-3.5 % beyond
 )

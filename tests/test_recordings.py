@@ -111,12 +111,12 @@ def test_a_drive_comes_back_from_a_bag(tmp_path, kind):
 def test_a_laser_that_hangs_upside_down_is_turned_round(tmp_path, kind):
     lidar, ranges = pk.Lidar(4, 0.05, 9.0), [1.0, 2.0, 3.0, 4.0]
     bag = Bag(tmp_path, kind)
-    bag.transform("base", "link")
+    bag.transform("base", "link", (0.2, 0.0), yaw=np.pi / 2)
     bag.transform("link", "/laser", (0.5, 0.0), roll=np.pi)  # two hops; older bags begin names with a stroke
     bag.odometry(1.0, (1.0, 1.0, np.pi / 2))
     bag.scan(1.0, lidar, ranges)
     points = pk.load_scans(bag.close()).points()
-    np.testing.assert_allclose(points, [(1.0, 2.5), (3.0, 1.5), (1.0, -1.5), (-3.0, 1.5)], atol=1e-6)
+    np.testing.assert_allclose(points, [(-0.5, 1.2), (0.5, 3.2), (3.5, 1.2), (0.5, -2.8)], atol=1e-6)
 
 
 @bags
