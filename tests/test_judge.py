@@ -219,10 +219,12 @@ def test_t17_waiting_for_a_busy_machine_is_no_fault(monkeypatch):
 
     with afar(0.2, length=waits) as workers:
         assert TASK.marked("length", {"length": remote(workers, "length")}).points == 3.0
-        workers.seconds = 0.05
-        mine = remote(workers, "length").afresh()
+        workers.seconds = 0.05  # on the clock, 0.2 s of a machine that is not busy
+        monkeypatch.setattr("psutil.getloadavg", lambda: (4.0 * psutil.cpu_count(), 0.0, 0.0))
+        assert remote(workers, "length").afresh()(np.array([3.0, 4.0])) == 5.0
+        monkeypatch.setattr("psutil.getloadavg", lambda: (0.0, 0.0, 0.0))
         with pytest.raises(OutOfTime):
-            mine(np.array([3.0, 4.0]))
+            remote(workers, "length").afresh()(np.array([3.0, 4.0]))
 
 
 @needs_fork
