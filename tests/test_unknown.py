@@ -223,3 +223,13 @@ def test_a_kind_is_one_of_the_kinds(kinds, got):
     message = f"kinds must be some of circle, triangle, rectangle, pentagon, polygon, got {got}"
     with pytest.raises(ValueError, match=exactly(message)):
         pk.find_shapes([(0, 0)], kinds=kinds)
+
+
+@pytest.mark.parametrize("apart", [0.12, 0.17])
+def test_sides_that_no_beam_met_are_not_certain_however_sparse_their_neighbours_are(apart):
+    """Two walls face each other, a point every three cells: the ends of a rectangle would be theirs alone."""
+    rng = np.random.default_rng(0)
+    for _ in range(5):
+        points = np.array([(x, y) for y in (0, apart) for x in np.arange(0, 0.48, 0.03)])
+        found = pk.find_shapes(points + rng.normal(0, 0.005, points.shape), resolution=0.01, rng=0)
+        assert not any(one.certain for one in found)

@@ -19,10 +19,10 @@ from ..lines import Line
 from ..seen import seen_shares
 from ..shapes import KINDS, Circle, Polygon, Shape
 from .candidates import candidates, explained_again, free_candidate
-from .deviations import Certainty, certainty
+from .deviations import Certainty, certainty, own_points
 from .evidence import CERTAIN, NEARLY_ALL, Candidate
 from .lack_of_fit import lack_of_fit
-from .outlines import LEAST_SIDE
+from .outlines import LEAST_SIDE, Outlines
 from .scatter import SIGMAS, depth_of, noise_of
 
 FEW_NEW = 0.1  # share of new points up to which a group is fitted anew from what it was
@@ -150,7 +150,7 @@ class Choice:
         """Whether what it is, is beyond doubt.
 
         It is ahead of all rivals, and of itself with bends; nearly all points lie on it, none deep inside; nearly all
-        of it was seen; it is so large that its kind can show.
+        of it was seen, each side by points of its own; it is so large that its kind can show.
         """
         best = self.ranked[0] if self.ranked else None
         if best is None or best.shape is None:
@@ -161,9 +161,16 @@ class Choice:
             and self.on_it.mean() >= NEARLY_ALL
             and not self.inside.any()
             and min(best.seen) >= MOST_SEEN
+            and self._has_own_points
             and large >= LEAST_SIDE
             and self.margin >= CERTAIN  # the last, for it fits the rivals that were not
         )
+
+    @property
+    def _has_own_points(self) -> bool:
+        """Whether each side has points of its own: sparse ones of its neighbours lie near a hidden one, too."""
+        figure = self.ranked[0].figure
+        return not isinstance(figure, Outlines) or bool(own_points(figure, self.points, self.spread).any(axis=0).all())
 
 
 def explained(

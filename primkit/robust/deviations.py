@@ -115,17 +115,19 @@ def _measured(figure: Outlines, seen: NDArray[np.bool_], square: bool, rectangle
     return np.roll(seen, 1) & seen & np.roll(seen, -1)  # a side ends where its neighbours' lines cross it
 
 
-def sides_seen(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bool_]:
-    """Tell which sides of an outline have points of their own, away from their corners, shape (K,)."""
-    r = figure.distances(points)[0]
-    t = figure.along(points)[0]
-    begin, end = figure.spans()
-    room = CORNER_SPREADS * spread
+def own_points(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bool_]:
+    """Tell which points, shape (N, 2), lie on which of the K sides and not near a corner of it, shape (N, K)."""
+    r, room = figure.distances(points)[0], CORNER_SPREADS * spread
     if figure.convex:
         of_no_other = np.count_nonzero(r < -room, axis=1) >= r.shape[1] - 1  # inside all sides but one, the near one
-        own = (np.abs(r) <= SIGMAS * spread) & of_no_other[:, None]
-    else:
-        own = (np.abs(r) <= SIGMAS * spread) & (t > begin + room) & (t < end - room)
+        return (np.abs(r) <= SIGMAS * spread) & of_no_other[:, None]
+    t, (begin, end) = figure.along(points)[0], figure.spans()
+    return (np.abs(r) <= SIGMAS * spread) & (t > begin + room) & (t < end - room)
+
+
+def sides_seen(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bool_]:
+    """Tell which sides of an outline have enough points of their own, away from their corners, shape (K,)."""
+    own, t, (begin, end) = own_points(figure, points, spread), figure.along(points)[0], figure.spans()
     first, last = (
         np.where(own, t, np.inf).min(axis=0, initial=np.inf),
         np.where(own, t, -np.inf).max(axis=0, initial=-np.inf),
