@@ -19,7 +19,7 @@ from ..lines import Line
 from ..seen import seen_shares
 from ..shapes import KINDS, Circle, Polygon, Shape
 from .candidates import candidates, explained_again, free_candidate
-from .deviations import Certainty, certainty, own_points
+from .deviations import Certainty, certainty, own_points, short_sides
 from .evidence import CERTAIN, NEARLY_ALL, Candidate
 from .lack_of_fit import lack_of_fit
 from .outlines import LEAST_SIDE, Outlines
@@ -168,9 +168,15 @@ class Choice:
 
     @property
     def _has_own_points(self) -> bool:
-        """Whether each side has points of its own: sparse ones of its neighbours lie near a hidden one, too."""
+        """Whether each side that is long for the spread has points of its own.
+
+        Where points are sparse, those of its neighbours lie near a hidden one, too.
+        """
         figure = self.ranked[0].figure
-        return not isinstance(figure, Outlines) or bool(own_points(figure, self.points, self.spread).any(axis=0).all())
+        if not isinstance(figure, Outlines):
+            return True
+        own = own_points(figure, self.points, self.spread).any(axis=0)
+        return bool((own | short_sides(figure, self.spread)).all())
 
 
 def explained(

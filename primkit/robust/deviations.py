@@ -125,6 +125,12 @@ def own_points(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bo
     return (np.abs(r) <= SIGMAS * spread) & (t > begin + room) & (t < end - room)
 
 
+def short_sides(figure: Outlines, spread: float) -> NDArray[np.bool_]:
+    """Tell which sides of an outline lie near their corners for the most part, shape (K,)."""
+    begin, end = figure.spans()
+    return np.asarray((end - begin)[0] < 4 * CORNER_SPREADS * spread)
+
+
 def sides_seen(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bool_]:
     """Tell which sides of an outline have enough points of their own, away from their corners, shape (K,)."""
     own, t, (begin, end) = own_points(figure, points, spread), figure.along(points)[0], figure.spans()
