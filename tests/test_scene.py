@@ -310,6 +310,8 @@ def finders():
 
 
 def test_a_thread_ends_with_its_look(world):
+    for thread in finders():  # of other tests' scenes
+        thread.join(10)
     scene = pk.drive_scene(world)
     scene.answer({"do": "step", "held": ["forward"]})
     assert len(finders()) <= 1

@@ -27,6 +27,7 @@ from primkit.course.grading import MIME
 from primkit.course.handed_in import Fault, file_faults, tree_hash
 from primkit.course.running import nbgrader
 from tests.submissions import ProblemSet, about, answers_of, read
+from tests.test_assignments import points_left
 
 ROOT = Path(__file__).resolve().parent.parent
 PS, NUMBER = "ps1", 1
@@ -88,9 +89,10 @@ def graded(tmp_path_factory):
     problem_set.hand_in("0123", problem_set.released)  # untouched, and a name that is a number
     mixture, points = {}, 0
     for task, kinds in answers_of(NUMBER).items():
-        name, (_, expected, _) = next((n, a) for n, a in kinds["wrong"].items() if 0 < a[1] < problem_set.of[task])
+        left = {name: points_left(task, loses) for name, (_, loses, _) in kinds["wrong"].items()}
+        name = next(name for name, kept in left.items() if 0 < kept < problem_set.of[task])
         mixture[task] = problem_set.listed(task, "wrong", name)
-        points += expected
+        points += left[name]
     problem_set.hand_in("mixed", problem_set.with_answers(mixture), listed=NUMBER)
     for name in ("broken", "torn"):
         problem_set.hand_in(name, '{"cells": [')

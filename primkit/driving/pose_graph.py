@@ -150,7 +150,8 @@ def step_rows(state: State, steps: Floats) -> tuple[Floats, csr_array]:
     drift = state.poses[1:].size + np.arange(2)
     at = np.hstack([3 * np.arange(n)[:, None] + np.arange(-3, 3), np.broadcast_to(drift, (n, 2))])
     order = [values[:, :2].reshape(-1, 8), values[:, 2], np.pad(np.diag(1 / np.array(DRIFT_STD)), ((0, 0), (6, 0)))]
-    columns = np.concatenate([at.repeat(2, axis=0), at, np.pad(drift, (6, 0), constant_values=-1)[None].repeat(2, 0)])
+    last = np.tile(np.pad(drift, (6, 0), constant_values=-1), (2, 1))
+    columns = np.concatenate([np.repeat(at, 2, axis=0), at, last])
     left = (off / std)[:, :2].ravel(), (off / std)[:, 2], state.drift / DRIFT_STD
     return np.concatenate(left), _rows(np.concatenate(order), columns, len(state.numbers))
 
