@@ -97,6 +97,10 @@ class Alignment:
 def align(scans: Scans, *, resolution: float | None = None) -> Alignment:
     """Place scans anew whose poses are those of an odometry that slips; the first pose is believed.
 
+    Where little is seen, do not trust it: with one lone circle in view and 2 mm of noise, it has ended worse than the
+    odometry without a word in ``open``; and with noise its covariance is somewhat too small (87 to 91 of 100 poses lie
+    within 95 %).
+
     Parameters
     ----------
     scans : Scans
