@@ -9,8 +9,7 @@ In:  a function and how many seconds it may take; or an error that came out of i
 Out: what the function returns, or ``OutOfTime``; and the ``Line`` that an error came from.
 
 >>> def halve(x):
-...     while x > 1:
-...         pass
+...     while x > 1: pass
 ...     return x / 2
 >>> call_within(1.0, halve, 0.5)
 0.25
