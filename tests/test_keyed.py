@@ -11,14 +11,20 @@ from tests.shipped_data import make_keys
 SUITE = pk.published_suite()
 
 
+@pytest.fixture(scope="module")
+def drives():
+    """The poses of all bundled drives, by name; worked out once."""
+    return published_drives()
+
+
 @pytest.mark.parametrize("name", SUITE)
 def test_the_bundled_keys_are_what_the_rule_gives(name):
     assert bundled_keys()[name] == make_keys(name)
 
 
 @pytest.mark.parametrize("name", SUITE)
-def test_a_drive_goes_straight_or_turns_on_the_spot(name):
-    poses = published_drives()[name]
+def test_a_drive_goes_straight_or_turns_on_the_spot(name, drives):
+    poses = drives[name]
     assert poses[0].tolist() == KEYED_START.tolist()
     way, turn = np.hypot(*np.diff(poses[:, :2], axis=0).T), np.diff(poses[:, 2])
     straight = np.array([key in "WS" for key in bundled_keys()[name]])
@@ -29,12 +35,12 @@ def test_a_drive_goes_straight_or_turns_on_the_spot(name):
     assert np.abs(poses[:, :2]).max() < 0.5 - 0.037  # on the board
 
 
-def test_the_drives_take_about_as_long_as_the_recorded_ones():
+def test_the_drives_take_about_as_long_as_the_recorded_ones(drives):
     """Theirs is time on the wall, with that of pictures that stood open: so 0.6 to 1.1 of it, by number of shapes."""
     recorded = {row["map"]: float(row["seconds"]) for row in recorded_rows() if row["movement"] == "manual"}
     for n in "1234":
         names = [name for name in SUITE if name.startswith(n)]
-        ours = np.mean([0.1 * len(published_drives()[name]) for name in names])
+        ours = np.mean([0.1 * len(drives[name]) for name in names])
         assert 0.6 < ours / np.mean([recorded[name] for name in names]) < 1.1
 
 
