@@ -53,10 +53,23 @@ class Cut:
         Sum of the squared distances of the points from their piece's line, square metres; points near the cuts are
         supposed to be as close as the others. The pieces need not meet in corners, nor bend: an outline with so many
         sides hardly comes closer to the points.
+    share : float
+        How many of the points belong to a piece, as a share.
     """
 
     moments: Floats
     squares: float
+    share: float
+
+    @property
+    def right_angled(self) -> float:
+        """What ``squares`` is where each piece runs along the best of all bearings, or across it, square metres."""
+        xx, yy, xy = scatter_sums(self.moments)
+        longest = np.argmax(xx + yy)
+        alike = (xx - yy) * (xx - yy)[longest] + 4 * xy * xy[longest] >= 0  # twice the angles are within a right one
+        sign = np.where(alike, 1.0, -1.0)
+        across = (xx + yy).sum() / 2 - np.hypot((sign * (xx - yy)).sum() / 2, (sign * xy).sum())
+        return max(float(across), 0.0) / self.share
 
     @cached_property
     def lines(self) -> list[Line]:
@@ -133,7 +146,8 @@ def _cuts_from(ordered: Floats, first: int) -> dict[int, Cut]:
         if np.isfinite(best[-1]):
             ends = _traced(last_cuts) if last_cuts else [0, n_knots - 1]
             pieces = moments[:, ends[:-1], ends[1:]]
-            cuts[k] = Cut(pieces, float(best[-1]) * len(ordered) / float(pieces[0].sum()))
+            share = float(pieces[0].sum()) / len(ordered)
+            cuts[k] = Cut(pieces, float(best[-1]) / share, share)
     return cuts
 
 
