@@ -164,7 +164,7 @@ class Ways:
     cuts: dict[int, Cut]
     spans: list[tuple[float, float]]
     least: dict[Way, float]
-    done: dict[Way, Figure | None]
+    done: dict[Way, tuple[float, Figure | None]]
     again: set[Way]
 
     @classmethod
@@ -177,9 +177,10 @@ class Ways:
         if circle is not None:
             ways.least[0, False] = ways.cost(circle, (0, False))
             if np.abs(circle.signed_distance(points)).max() <= SIGMAS * spread:
-                ways.done[0, False] = circle if circle.radius <= MOST_RADIUS else None
+                ways.done[0, False] = ways.least[0, False], circle if circle.radius <= MOST_RADIUS else None
         if wall is not None:
-            ways.done[1, False], ways.least[1, False] = wall, ways.cost(wall, (1, False))
+            ways.least[1, False] = ways.cost(wall, (1, False))
+            ways.done[1, False] = ways.least[1, False], wall
         for k in (3, 4, 5):
             if k in cuts or spans:
                 ways.least[k, False] = ways._cost(cuts[k].squares if k in cuts else 0.0, (k, False))
@@ -201,15 +202,15 @@ class Ways:
                 least = best - CHANCE_OF_A_SIDE * max(way[0] - winner, 0) if again else best + CERTAIN
                 if KIND_OF[way] not in kinds or (self.least[way] > least and not thorough):
                     continue
-                figure = self.fitted(way, again=again)
+                cost, figure = self.fitted(way, again=again)
                 if figure is not None:
-                    fits[way] = self.cost(figure, way), figure
-                    best, winner = min((best, winner), (fits[way][0], way[0]))
+                    fits[way] = cost, figure
+                    best, winner = min((best, winner), (cost, way[0]))
         return fits
 
-    def cost(self, figure: Figure, way: Way) -> float:
-        """Return what a fit costs."""
-        return self._cost(float((_distance(figure, self.points) ** 2).sum()), way)
+    def cost(self, figure: Figure | None, way: Way) -> float:
+        """Return what a fit costs; infinite without one."""
+        return np.inf if figure is None else self._cost(float((_distance(figure, self.points) ** 2).sum()), way)
 
     def _cost(self, squares: float, way: Way) -> float:
         k, square = way
@@ -217,8 +218,8 @@ class Ways:
         nameless = NAMELESS_COST if k == 4 and not square else 0.0
         return squares / self.spread**2 + price(fitted, len(self.points), self.spread) + nameless
 
-    def fitted(self, way: Way, *, again: bool) -> Figure | None:
-        """Return the fit; None where there is none.
+    def fitted(self, way: Way, *, again: bool) -> tuple[float, Figure | None]:
+        """Return what the fit costs, and the fit; None where there is none.
 
         Again it begins from one side more than the best outline that has one side less; at right angles, from frames
         around the points.
@@ -226,15 +227,16 @@ class Ways:
         k, square = way
         starts = outlines_with(self.cuts, self.spans, k) if k > 1 else None
         if way not in self.done:
-            self.done[way] = _circle_through(self.points) if k == 0 else self._from_cuts(starts, square)
-        fit = self.done[way]
-        badly = fit is None or self.cost(fit, way) > self.least[way] + BEGAN_BADLY
-        if again and badly and starts is not None and way not in self.again:
+            fit = _circle_through(self.points) if k == 0 else self._from_cuts(starts, square)
+            self.done[way] = self.cost(fit, way), fit
+        cost, fit = self.done[way]
+        if again and cost > self.least[way] + BEGAN_BADLY and starts is not None and way not in self.again:
             self.again.add(way)
             begin = frames(self.points, starts) if square else self._one_side_more(k)
             begin = joined(fit, begin) if isinstance(fit, Outlines) else begin
-            fit = self.done[way] = _refined(self.points, begin, self.spread, square=square)
-        return fit
+            fit = _refined(self.points, begin, self.spread, square=square)
+            self.done[way] = self.cost(fit, way), fit
+        return self.done[way]
 
     def _from_cuts(self, starts: Outlines | None, square: bool) -> Outlines | None:
         """Return the fit that pieces and chords lead to."""
@@ -245,7 +247,7 @@ class Ways:
 
     def _one_side_more(self, k: int) -> Outlines:
         """Return starts with k sides, from the best outline that has one less."""
-        fewer = self.fitted((k - 1, False), again=True) if k > 3 else None
+        fewer = self.fitted((k - 1, False), again=True)[1] if k > 3 else None
         return one_side_more(self.points, fewer) if isinstance(fewer, Outlines) else Outlines(*np.empty((2, 0, k)))
 
 

@@ -179,9 +179,8 @@ def moments_between(points: Floats, knots: NDArray[np.intp]) -> Floats:
 
     A piece from one cut to another begins a knot after the first, and ends a knot before the second.
     """
-    x, y = points.T
     sums = np.zeros((6, len(points) + 1))
-    np.cumsum([np.ones_like(x), x, y, x * x, y * y, x * y], axis=1, out=sums[:, 1:])
+    np.cumsum(features_of(points), axis=1, out=sums[:, 1:])
     sums = sums[:, knots]
     return sums[:, None, :-1] - sums[:, 1:, None]
 
@@ -191,6 +190,12 @@ def long_enough(points: Floats, knots: NDArray[np.intp], least: float = LEAST_ST
     x, y = points[np.minimum(knots, len(points) - 1)].T
     chord = (x[1:] - x[:-1, None]) ** 2 + (y[1:] - y[:-1, None]) ** 2
     return chord >= least**2
+
+
+def features_of(points: Floats) -> Floats:
+    """Return 1, x, y, xx, yy and xy of each point, shape (6, N): what all sums over points are made of."""
+    x, y = points.T
+    return np.array([np.ones_like(x), x, y, x * x, y * y, x * y])
 
 
 def scatter_sums(moments: Floats) -> tuple[Floats, Floats, Floats]:
