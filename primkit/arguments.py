@@ -166,6 +166,8 @@ def as_floats(values: Any, name: str, shape: str) -> Floats:
         ...
     ValueError: ranges must have no masked values, got 1 of them: leave them out, as compressed() does
     """
+    if type(values) is np.ndarray and values.dtype == np.float64:  # as nearly always from within
+        return values
     parts = values if isinstance(values, (list, tuple)) else [values]
     if masked := sum(int(np.ma.getmaskarray(part).sum()) for part in parts if isinstance(part, np.ma.MaskedArray)):
         rule = f"{name} must have no masked values, got {masked} of them"

@@ -22,7 +22,6 @@ from .arguments import Bools, Floats
 from .shapes import Circle, Shape
 
 REACH = 0.012  # m on cells of 1 mm: about four times as far as neighbours on an outline lie apart
-PLACES_PER_SIDE = 50  # a side is looked at in so many places, a circle in four times as many
 
 
 def is_seen(places: Floats, points: Floats, resolution: float = 0.001) -> Bools:
@@ -37,30 +36,46 @@ def is_seen(places: Floats, points: Floats, resolution: float = 0.001) -> Bools:
     return near
 
 
-def seen_shares(shape: Shape, points: Floats) -> tuple[float, ...]:
-    """Return the share of each side, or of the whole circle, that was seen.
-
-    >>> from primkit.shapes import Polygon
-    >>> square = Polygon([(0, 0), (0.1, 0), (0.1, 0.1), (0, 0.1)])
-    >>> [round(share, 1) for share in seen_shares(square, np.array([(0.0, 0.05), (0.05, 0.0)]))]
-    [0.2, 0.0, 0.0, 0.2]
-    """
-    if isinstance(shape, Circle):
-        return shares_of(shape.outline(4 * PLACES_PER_SIDE)[None], points)
-    return shares_of(places_between(shape.vertices, shape.vertices + shape.edges), points)
-
-
 def share_seen(shape: Shape, points: Floats, resolution: float = 0.001) -> float:
     """Return the share of a whole outline that was seen, 0 to 1."""
     return float(is_seen(shape.outline(400), points, resolution).mean())
 
 
-def places_between(begin: Floats, end: Floats) -> Floats:
-    """Return places along K sides, shape (K, 2) each for their ends -> (K, PLACES_PER_SIDE, 2)."""
-    steps = (np.arange(PLACES_PER_SIDE) + 0.5)[:, None] / PLACES_PER_SIDE
-    return begin[:, None] + steps * (end - begin)[:, None]
+def seen_shares(shape: Shape, points: Floats) -> tuple[float, ...]:
+    """Return the share of each side, or of the whole circle, that was seen, on cells of 1 mm.
+
+    >>> from primkit.shapes import Polygon
+    >>> square = Polygon([(0, 0), (0.1, 0), (0.1, 0.1), (0, 0.1)])
+    >>> [round(share, 2) for share in seen_shares(square, np.array([(0.0, 0.05), (0.05, 0.0)]))]
+    [0.24, 0.0, 0.0, 0.24]
+    """
+    if not isinstance(shape, Circle):
+        return shares_of_sides(shape.vertices, shape.vertices + shape.edges, points)
+    offset, once = points - shape.center, 2 * np.pi
+    away, bearing = np.hypot(*offset.T), np.arctan2(offset[:, 1], offset[:, 0])
+    twice = 2 * shape.radius * np.maximum(away, np.finfo(float).tiny)
+    half = np.arccos(np.clip((shape.radius**2 + away**2 - REACH**2) / twice, -1.0, 1.0))
+    middles, halves = np.concatenate([bearing, bearing + once, bearing + 2 * once]), np.tile(half, 3)
+    return _shares_covered((middles - halves)[None], (middles + halves)[None], np.array([once]))
 
 
-def shares_of(places: Floats, points: Floats) -> tuple[float, ...]:
-    """Return of each row of places, shape (K, M, 2), the share that was seen."""
-    return tuple((np.count_nonzero(is_seen(places, points), axis=1) / places.shape[1]).tolist())
+def shares_of_sides(begin: Floats, end: Floats, points: Floats) -> tuple[float, ...]:
+    """Return of each of K straight sides, shape (K, 2) each for their ends, the share that was seen."""
+    lengths = np.hypot(*(end - begin).T)
+    x, y = ((end - begin) / lengths[:, None]).T
+    along, across = np.array([[x, y], [-y, x]]).swapaxes(1, 2) @ points.T  # (K, N) each
+    along, across = (
+        along - (x * begin[:, 0] + y * begin[:, 1])[:, None],
+        across - (x * begin[:, 1] - y * begin[:, 0])[:, None],
+    )
+    half = np.sqrt(np.maximum(REACH**2 - across**2, 0.0))
+    return _shares_covered(along - half, along + half, lengths)
+
+
+def _shares_covered(begin: Floats, end: Floats, lengths: Floats) -> tuple[float, ...]:
+    """Return what share of each length, shape (K,), lies in none of the gaps between intervals, shape (K, N) each."""
+    whole = lengths[:, None]
+    pairs = begin.clip(0.0, whole) + 1j * end.clip(0.0, whole)  # in order of where they begin, once they are sorted
+    pairs = np.sort(np.hstack([pairs, 0 * whole, whole * (1 + 1j)]), axis=1)
+    gaps = np.maximum(pairs.real[:, 1:] - np.maximum.accumulate(pairs.imag[:, :-1], axis=1), 0.0)
+    return tuple(np.round(1 - gaps.sum(axis=1) / lengths, 9).tolist())  # a whole one is 1, whatever the rounding

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import primkit as pk
+from primkit.robust.cuts import features_of
 from primkit.robust.outlines import Outlines
 from primkit.robust.refine import one_side_more, refine_hard, refine_soft, refit, shares, truncated_cost
 from tests.test_outlines import outline_of
@@ -39,7 +40,7 @@ def test_refitting_is_total_least_squares_on_the_points_of_each_side():
     truth = outline_of(polygon)
     points = polygon.outline(200) + rng.normal(0, 0.001, (200, 2))
     owner = truth.distances(points)[0].argmax(axis=1)
-    fitted = refit(points, np.eye(5)[owner][None], truth)
+    fitted = refit(features_of(points), np.eye(5)[owner][None], truth)
     for side in range(5):
         own = points[owner == side]
         _, axes = np.linalg.eigh(np.cov((own - own.mean(axis=0)).T))
@@ -53,7 +54,7 @@ def test_a_side_without_points_stays_where_it_was():
     points = np.array([(0.09, y) for y in np.linspace(-0.1, 0.1, 20)])
     weights = np.zeros((1, 20, 4))
     weights[0, :, 0] = 1
-    fitted = refit(points, weights, square)
+    fitted = refit(features_of(points), weights, square)
     assert fitted.offsets[0].round(12).tolist() == [0.09, 0.1, 0.1, 0.1]
     assert fitted.angles[0, 1:].tolist() == square.angles[0, 1:].tolist()
 
@@ -68,7 +69,7 @@ def test_a_square_fit_has_right_angles_and_the_least_squares_bearing(seed):
     points = rectangle.outline(240) - middle + rng.normal(0, 0.001, (240, 2))
     start = Outlines(truth.angles[:, :1] + 0.02 + np.arange(4) * np.pi / 2, truth.offsets)
     owner = truth.distances(points)[0].argmax(axis=1)
-    fitted = refit(points, np.eye(4)[owner][None], start, square=True)
+    fitted = refit(features_of(points), np.eye(4)[owner][None], start, square=True)
     np.testing.assert_allclose(np.diff(fitted.angles[0]), np.pi / 2, atol=1e-12)
 
     def cost(turn):  # offsets are the means for any bearing: the bearing alone is searched
@@ -106,7 +107,7 @@ def test_leaps_end_where_small_steps_end(noise):
         slow = start
         for _ in range(400):
             share, told, _ = shares(points, slow, noise)
-            slow = refit(points, share * told, slow)
+            slow = refit(features_of(points), share * told, slow)
         np.testing.assert_allclose(refine_soft(points, start, noise).corners(), slow.corners(), atol=1e-5)
 
 

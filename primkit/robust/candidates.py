@@ -67,6 +67,7 @@ BLURRED = 0.002
 CONTENDER = 40.0
 LOOKS, NEARLY_ALL_POINTS = 3, 0.97  # strays lead cuts astray: once more without them, until so many points lie on it
 BEGAN_BADLY = 25.0  # a fit that costs so much more than it could
+CHANCE_OF_A_SIDE = 25.0  # by so much noise alone lets a cut into one piece more come closer
 RIVAL = 200.0  # and no rival comes near any more
 CIRCLE_LOOKS, KEPT_NEAREST = 2, 0.8  # share of the points that a circle's start is fitted to
 
@@ -129,15 +130,8 @@ def _fits(points: Floats, spread: float, thorough: bool, kinds: Sequence[str]) -
     """
     kept = by_bearing(points)
     kept = kept[:: -(-len(kept) // ENOUGH_POINTS)]
-    for look in range(LOOKS):
-        ways = Ways.through(kept, spread)
-        fits: dict[Way, tuple[float, Figure]] = {}
-        for way, least in sorted(ways.least.items(), key=lambda item: item[1]):
-            if least > min((cost for cost, _ in fits.values()), default=np.inf) + CERTAIN and not thorough:
-                break
-            figure = ways.fitted(*way) if KIND_OF[way] in kinds else None
-            if figure is not None:
-                fits[way] = ways.cost(figure, way), figure
+    for _ in range(LOOKS):
+        fits = Ways.through(kept, spread).fits(kinds, thorough)
         if not fits:
             return
         best, nearest = min(fits.values(), key=lambda fit: fit[0])
@@ -147,7 +141,8 @@ def _fits(points: Floats, spread: float, thorough: bool, kinds: Sequence[str]) -
         on_it = np.abs(_distance(nearest, kept)) <= SIGMAS * spread
         if on_it.mean() >= NEARLY_ALL_POINTS:
             return
-        kept = kept[in_company(kept, spread) if look == 0 else on_it]
+        near = in_company(kept, spread)
+        kept = kept[on_it if near.all() else near]
         if len(kept) < LEAST_POINTS:
             return
 
@@ -169,30 +164,53 @@ class Ways:
     cuts: dict[int, Cut]
     spans: list[tuple[float, float]]
     least: dict[Way, float]
-    done: dict[Way, Figure | None]
+    done: dict[Way, tuple[float, Figure | None]]
+    again: set[Way]
 
     @classmethod
     def through(cls, points: Floats, spread: float) -> Ways:
         """Return the ways to explain these points."""
         unseen = REACH + SIGMAS * (spread - LEAST_SPREAD)
-        ways = cls(points, spread, best_cuts(points, unseen), chords(points, unseen), {}, {})
+        cuts, spans = best_cuts(points, unseen), chords(points, unseen)
+        ways = cls(points, spread, cuts, spans, {}, {}, set())
         circle, wall = fit_circle(points, "taubin"), fit_line(points)
         if circle is not None:
             ways.least[0, False] = ways.cost(circle, (0, False))
             if np.abs(circle.signed_distance(points)).max() <= SIGMAS * spread:
-                ways.done[0, False] = circle if circle.radius <= MOST_RADIUS else None
+                ways.done[0, False] = ways.least[0, False], circle if circle.radius <= MOST_RADIUS else None
         if wall is not None:
-            ways.done[1, False], ways.least[1, False] = wall, ways.cost(wall, (1, False))
+            ways.least[1, False] = ways.cost(wall, (1, False))
+            ways.done[1, False] = ways.least[1, False], wall
         for k in (3, 4, 5):
-            if k in ways.cuts or ways.spans:
-                squares = ways.cuts[k].squares if k in ways.cuts else 0.0
-                for square in (False, True)[: 1 + (k == 4)]:
-                    ways.least[k, square] = ways._cost(squares, (k, square))
+            if k in cuts or spans:
+                ways.least[k, False] = ways._cost(cuts[k].squares if k in cuts else 0.0, (k, False))
+        if (4, False) in ways.least:
+            at_right_angles = [cuts[k].right_angled for k in range(2 if spans else 4, 5) if k in cuts]
+            ways.least[4, True] = ways._cost(min(at_right_angles, default=0.0), (4, True))
         return ways
 
-    def cost(self, figure: Figure, way: Way) -> float:
-        """Return what a fit costs."""
-        return self._cost(float((_distance(figure, self.points) ** 2).sum()), way)
+    def fits(self, kinds: Sequence[str], thorough: bool) -> dict[Way, tuple[float, Figure]]:
+        """Return the ways that may win, each with what it costs and its fit; all ways if that is asked.
+
+        One that costs far more than it could began badly, and begins once more; but not where only what chance gives
+        to so many sides more would make it win.
+        """
+        fits: dict[Way, tuple[float, Figure]] = {}
+        best, winner = np.inf, 0
+        for again in (False, True):
+            for way in sorted(self.least, key=self.least.__getitem__):
+                least = best - CHANCE_OF_A_SIDE * max(way[0] - winner, 0) if again else best + CERTAIN
+                if KIND_OF[way] not in kinds or (self.least[way] > least and not thorough):
+                    continue
+                cost, figure = self.fitted(way, again=again)
+                if figure is not None:
+                    fits[way] = cost, figure
+                    best, winner = min((best, winner), (cost, way[0]))
+        return fits
+
+    def cost(self, figure: Figure | None, way: Way) -> float:
+        """Return what a fit costs; infinite without one."""
+        return np.inf if figure is None else self._cost(float((_distance(figure, self.points) ** 2).sum()), way)
 
     def _cost(self, squares: float, way: Way) -> float:
         k, square = way
@@ -200,30 +218,36 @@ class Ways:
         nameless = NAMELESS_COST if k == 4 and not square else 0.0
         return squares / self.spread**2 + price(fitted, len(self.points), self.spread) + nameless
 
-    def fitted(self, k: int, square: bool) -> Figure | None:
-        """Return the fit; None where there is none.
+    def fitted(self, way: Way, *, again: bool) -> tuple[float, Figure | None]:
+        """Return what the fit costs, and the fit; None where there is none.
 
-        One that costs far more than it could began badly: it begins once more, from one side more than the best
-        outline that has one side less; at right angles, from frames around the points.
+        Again it begins from one side more than the best outline that has one side less; at right angles, from frames
+        around the points.
         """
-        if (k, square) not in self.done:
-            fit: Circle | Outlines | None = None
-            if k == 0:
-                fit = _circle_through(self.points)
-            elif (starts := outlines_with(self.cuts, self.spans, k)) is not None:
-                begin = Outlines(starts.angles[:, :1] + QUARTERS, starts.offsets) if square else starts
-                as_cut = len(begin) == 1 and not square and self.spread < BLURRED and begin.sound()[0]
-                fit = begin if as_cut else _refined(self.points, begin, self.spread, square=square)
-                if fit is None or self.cost(fit, (k, square)) > self.least[k, square] + BEGAN_BADLY:
-                    begin = frames(self.points, starts) if square else self._one_side_more(k)
-                    begin = begin if fit is None else joined(fit, begin)
-                    fit = _refined(self.points, begin, self.spread, square=square)
-            self.done[k, square] = fit
-        return self.done[k, square]
+        k, square = way
+        starts = outlines_with(self.cuts, self.spans, k) if k > 1 else None
+        if way not in self.done:
+            fit = _circle_through(self.points) if k == 0 else self._from_cuts(starts, square)
+            self.done[way] = self.cost(fit, way), fit
+        cost, fit = self.done[way]
+        if again and cost > self.least[way] + BEGAN_BADLY and starts is not None and way not in self.again:
+            self.again.add(way)
+            begin = frames(self.points, starts) if square else self._one_side_more(k)
+            begin = joined(fit, begin) if isinstance(fit, Outlines) else begin
+            fit = _refined(self.points, begin, self.spread, square=square)
+            self.done[way] = self.cost(fit, way), fit
+        return self.done[way]
+
+    def _from_cuts(self, starts: Outlines | None, square: bool) -> Outlines | None:
+        """Return the fit that pieces and chords lead to."""
+        if starts is None or (len(starts) == 1 and not square and self.spread < BLURRED and starts.sound()[0]):
+            return starts
+        begin = Outlines(starts.angles[:, :1] + QUARTERS, starts.offsets) if square else starts
+        return _refined(self.points, begin, self.spread, square=square)
 
     def _one_side_more(self, k: int) -> Outlines:
         """Return starts with k sides, from the best outline that has one less."""
-        fewer = self.fitted(k - 1, False) if k > 3 else None
+        fewer = self.fitted((k - 1, False), again=True)[1] if k > 3 else None
         return one_side_more(self.points, fewer) if isinstance(fewer, Outlines) else Outlines(*np.empty((2, 0, k)))
 
 

@@ -109,8 +109,8 @@ class Choice:
         if shape is None:
             return False
         lengths = shape.sides if isinstance(shape, Polygon) else [shape.perimeter]
-        seen = self.ranked[0].seen  # by those points alone that lie on it; or else by all
-        return any(np.average(each, weights=lengths) >= NEARLY_ALL for each in (seen, seen_shares(shape, self.points)))
+        ways = (lambda: self.ranked[0].seen, lambda: seen_shares(shape, self.points))  # by points on it, or else by all
+        return any(np.average(each(), weights=lengths) >= NEARLY_ALL for each in ways)
 
     @property
     def lead(self) -> float:

@@ -53,10 +53,23 @@ class Cut:
         Sum of the squared distances of the points from their piece's line, square metres; points near the cuts are
         supposed to be as close as the others. The pieces need not meet in corners, nor bend: an outline with so many
         sides hardly comes closer to the points.
+    share : float
+        How many of the points belong to a piece, as a share.
     """
 
     moments: Floats
     squares: float
+    share: float
+
+    @property
+    def right_angled(self) -> float:
+        """What ``squares`` is where each piece runs along the best of all bearings, or across it, square metres."""
+        xx, yy, xy = scatter_sums(self.moments)
+        longest = np.argmax(xx + yy)
+        alike = (xx - yy) * (xx - yy)[longest] + 4 * xy * xy[longest] >= 0  # twice the angles are within a right one
+        sign = np.where(alike, 1.0, -1.0)
+        across = (xx + yy).sum() / 2 - np.hypot((sign * (xx - yy)).sum() / 2, (sign * xy).sum())
+        return max(float(across), 0.0) / self.share
 
     @cached_property
     def lines(self) -> list[Line]:
@@ -133,7 +146,8 @@ def _cuts_from(ordered: Floats, first: int) -> dict[int, Cut]:
         if np.isfinite(best[-1]):
             ends = _traced(last_cuts) if last_cuts else [0, n_knots - 1]
             pieces = moments[:, ends[:-1], ends[1:]]
-            cuts[k] = Cut(pieces, float(best[-1]) * len(ordered) / float(pieces[0].sum()))
+            share = float(pieces[0].sum()) / len(ordered)
+            cuts[k] = Cut(pieces, float(best[-1]) / share, share)
     return cuts
 
 
@@ -165,9 +179,8 @@ def moments_between(points: Floats, knots: NDArray[np.intp]) -> Floats:
 
     A piece from one cut to another begins a knot after the first, and ends a knot before the second.
     """
-    x, y = points.T
     sums = np.zeros((6, len(points) + 1))
-    np.cumsum([np.ones_like(x), x, y, x * x, y * y, x * y], axis=1, out=sums[:, 1:])
+    np.cumsum(features_of(points), axis=1, out=sums[:, 1:])
     sums = sums[:, knots]
     return sums[:, None, :-1] - sums[:, 1:, None]
 
@@ -177,6 +190,12 @@ def long_enough(points: Floats, knots: NDArray[np.intp], least: float = LEAST_ST
     x, y = points[np.minimum(knots, len(points) - 1)].T
     chord = (x[1:] - x[:-1, None]) ** 2 + (y[1:] - y[:-1, None]) ** 2
     return chord >= least**2
+
+
+def features_of(points: Floats) -> Floats:
+    """Return 1, x, y, xx, yy and xy of each point, shape (6, N): what all sums over points are made of."""
+    x, y = points.T
+    return np.array([np.ones_like(x), x, y, x * x, y * y, x * y])
 
 
 def scatter_sums(moments: Floats) -> tuple[Floats, Floats, Floats]:

@@ -26,7 +26,7 @@ import numpy as np
 
 from ..arguments import Floats
 from ..lines import Line
-from ..seen import PLACES_PER_SIDE, REACH, places_between, shares_of
+from ..seen import REACH, seen_shares, shares_of_sides
 from ..shapes import Circle, Kind, Shape
 from .outlines import Outlines
 from .refine import shares
@@ -120,20 +120,17 @@ def judged(points: Floats, figure: Figure, spread: float, *, square: bool = Fals
         length = _length_along(points, figure, SIGMAS * spread)
         cost = _cost(log_likelihood, OF_WALL, len(points), spread) + _length_cost(on_it, length)
         return Candidate(figure, False, cost + UNSEEN_COST * length, length, on_it)
+    distance = figure.signed_distance(points) if isinstance(figure, Circle) else figure.distance(points)[0]
+    own = points[np.abs(distance) <= SIGMAS * spread]
     if isinstance(figure, Circle):
-        lengths, fitted = np.array([figure.perimeter]), OF_CIRCLE
-        places = figure.outline(4 * PLACES_PER_SIDE)[None]
-        distance = figure.signed_distance(points)
+        lengths, fitted, seen = np.array([figure.perimeter]), OF_CIRCLE, seen_shares(figure, own)
         on_it, log_likelihood = _along_smooth(distance, spread)
     else:
-        corners, after = figure.ends()
-        lengths, k = np.hypot(*(after - corners)[0].T), corners.shape[1]
-        places = places_between(corners[0], after[0])
-        fitted = OF_SQUARE if square else of_sides(k)
-        distance = figure.distance(points)[0]
+        (corners,), (after,) = figure.ends()
+        lengths, seen = np.hypot(*(after - corners).T), shares_of_sides(corners, after, own)
+        fitted = OF_SQUARE if square else of_sides(len(corners))
         share, _, each = shares(points, figure, spread)
         on_it, log_likelihood = float(share.sum()), float(each[0])
-    seen = shares_of(places, points[np.abs(distance) <= SIGMAS * spread])
     length = float(lengths @ np.array(seen))
     cost = _cost(log_likelihood, fitted, len(points), spread) + _length_cost(on_it, length)
     cost += UNSEEN_COST * float(lengths.sum() - length) + INSIDE_COST * _inside(distance, spread)

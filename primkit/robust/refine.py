@@ -26,7 +26,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import Floats
-from .outlines import Outlines, from_angle_order
+from .cuts import features_of, scatter_sums
+from .outlines import QUARTERS, Outlines, from_angle_order
 from .scatter import GHOSTS, LEAST_SPREAD, NOWHERE, OUTLINE_LENGTH, scatter
 
 # A side that has fewer points than this (shares count in part) has nothing to be fitted to, and stays.
@@ -59,14 +60,14 @@ def refine_hard(points: Floats, guess: Outlines, reach: float, *, square: bool =
     Outlines
         The C guesses after a few rounds; some may no longer be ``sound``.
     """
-    before = None
+    before, features = None, features_of(points)
     for _ in range(HARD_ROUNDS):
         r = guess.distances(points)
         farthest_out = r.max(axis=2, keepdims=True)
         given = (r == farthest_out) & (np.abs(farthest_out) <= reach)
         if before is not None and (given == before).all():
             break
-        before, guess = given, refit(points, given.astype(float), guess, square=square)
+        before, guess = given, refit(features, given.astype(float), guess, square=square)
     return guess
 
 
@@ -101,17 +102,17 @@ def refine_soft(
     Outlines
         The C outlines, settled; or as they were before one of them would have stopped being ``sound``.
     """
-    settled = SETTLED_TURN * (spread / LEAST_SPREAD) ** 0.5
+    settled, features = SETTLED_TURN * (spread / LEAST_SPREAD) ** 0.5, features_of(points)
     for _ in range(SOFT_ROUNDS // 2):
-        steps = [guess]
-        for _ in range(2):
+        steps, move = [guess], np.inf
+        while len(steps) < 3 and move > settled:
             share, told, _ = shares(points, steps[-1], spread)
-            refined = refit(points, share * told, steps[-1], square=square)
-            if not sound(refined).all():
-                return steps[-1]
-            steps.append(refined)
-            if np.abs(_as_rows(refined) - _as_rows(steps[-2])).max(initial=0.0) <= settled:
-                return refined
+            steps.append(refit(features, share * told, steps[-1], square=square))
+            move = np.abs(_as_rows(steps[-1]) - _as_rows(steps[-2])).max(initial=0.0)
+        if not sound(steps[-1]).all():
+            return guess
+        if move <= settled:
+            return steps[-1]
         far = _leap(*steps)
         guess = far if sound(far).all() else steps[-1]
     return guess
@@ -169,13 +170,13 @@ def shares(points: Floats, outlines: Outlines, spread: float) -> tuple[Floats, F
     return density / total[..., None], told, np.log(total).sum(axis=1)
 
 
-def refit(points: Floats, weights: Floats, outlines: Outlines, *, square: bool = False) -> Outlines:
+def refit(features: Floats, weights: Floats, outlines: Outlines, *, square: bool = False) -> Outlines:
     """Return the outlines whose sides fit their points best, by weighted total least squares.
 
     Parameters
     ----------
-    points : array, shape (N, 2)
-        Metres.
+    features : array, shape (6, N)
+        Of the points, as ``features_of`` has them.
     weights : array, shape (C, N, K)
         How much each point counts for each side.
     outlines : Outlines
@@ -183,34 +184,18 @@ def refit(points: Floats, weights: Floats, outlines: Outlines, *, square: bool =
     square : bool
         Fit one bearing for four sides at right angles.
     """
-    x, y = points.T
-    features = np.array([np.ones_like(x), x, y, x * x, y * y, x * y])
-    mass, *moments = (features @ weights).transpose(1, 0, 2)  # (C, K) each
-    enough = mass >= LEAST_OF_SIDE
-    mx, my, mxx, myy, mxy = moments / np.where(enough, mass, 1.0)  # sides without points are set right below
-    sxx, syy, sxy = mxx - mx * mx, myy - my * my, mxy - mx * my  # scatter about each side's mean
-
-    if square:
-        angles = _common_bearing(*(np.where(enough, mass * s, 0.0) for s in (sxx, syy, sxy)))
-        fitted = np.ones_like(enough)
+    sums = (features @ weights).transpose(1, 0, 2)  # (6, C, K)
+    enough = sums[0] >= LEAST_OF_SIDE
+    xx, yy, xy = scatter_sums(sums)
+    if square:  # every second side is turned back by a quarter
+        mixed, along = ((each[:, ::2] - each[:, 1::2]).sum(axis=1) for each in (xy * enough, (xx - yy) * enough))
+        angles = (0.5 * np.arctan2(2 * mixed, along) + np.pi / 2)[:, None] + QUARTERS
     else:
-        angles = 0.5 * np.arctan2(2 * sxy, sxx - syy) + np.pi / 2  # across the direction of most scatter
-        fitted = enough
+        angles = np.where(enough, 0.5 * np.arctan2(2 * xy, xx - yy) + np.pi / 2, outlines.angles)
     # An axis has two normals; keep the one on the side where the normal was.
     angles = outlines.angles + np.mod(angles - outlines.angles + np.pi / 2, np.pi) - np.pi / 2
-    angles = np.where(fitted, angles, outlines.angles)
-    offsets = np.where(enough, np.cos(angles) * mx + np.sin(angles) * my, outlines.offsets)
-    return Outlines(angles, offsets)
-
-
-def _common_bearing(sxx: Floats, syy: Floats, sxy: Floats) -> Floats:
-    """Return the normals' bearings of four sides at right angles, from the scatter of each, shape (C, 4)."""
-    turned = np.array([False, True, False, True])  # every second side is turned back by a quarter
-    along = np.where(turned, syy, sxx).sum(axis=1)
-    across = np.where(turned, sxx, syy).sum(axis=1)
-    mixed = np.where(turned, -sxy, sxy).sum(axis=1)
-    first = 0.5 * np.arctan2(2 * mixed, along - across) + np.pi / 2
-    return first[:, None] + np.arange(4) * (np.pi / 2)
+    offsets = (np.cos(angles) * sums[1] + np.sin(angles) * sums[2]) / np.maximum(sums[0], LEAST_OF_SIDE)
+    return Outlines(angles, np.where(enough, offsets, outlines.offsets))
 
 
 def one_side_more(points: Floats, outline: Outlines) -> Outlines:
@@ -244,5 +229,5 @@ def one_side_more(points: Floats, outline: Outlines) -> Outlines:
             weights.append(np.column_stack([(owner[:, None] == np.arange(k)) & ~taken[:, None], taken]))
             angles.append([*outline.angles[0], outline.angles[0, side] + turn / 2])
     start = Outlines(np.array(angles), np.tile([*outline.offsets[0], 0.0], (2 * k, 1)))
-    guess = refit(points, np.array(weights, dtype=float), start)
+    guess = refit(features_of(points), np.array(weights, dtype=float), start)
     return from_angle_order(guess.angles, guess.offsets)

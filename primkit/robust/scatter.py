@@ -121,12 +121,11 @@ def scatter(distance: Floats, spread: float) -> tuple[Floats, Floats]:
     noise, squared = noise_of(spread), distance**2
     if noise == 0:
         return np.exp(-0.5 / spread**2 * squared) / (np.sqrt(2 * np.pi) * spread), np.ones_like(squared)
-    density, told = np.zeros_like(squared), np.zeros_like(squared)
-    for share, across in zip(SHARES, ACROSS, strict=True):
-        variance = LEAST_SPREAD**2 + noise**2 * across
-        part = share / np.sqrt(2 * np.pi * variance) * np.exp(-0.5 / variance * squared)
-        density += part
-        told += part * (spread**2 / variance)
+    variances = LEAST_SPREAD**2 + noise**2 * ACROSS
+    heights = SHARES / np.sqrt(2 * np.pi * variances)
+    parts = [h * np.exp(-0.5 / v * squared) for h, v in zip(heights.tolist(), variances.tolist(), strict=True)]
+    density = parts[0] + parts[1] + parts[2]
+    told = sum(part * (spread**2 / v) for part, v in zip(parts, variances.tolist(), strict=True))
     return density, told / np.maximum(density, np.finfo(float).tiny)
 
 
