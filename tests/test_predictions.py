@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import primkit as pk
-from primkit.widgets.drawing import size_of
 from primkit.widgets.predictions import KEPT_IN, questions
+from primkit.widgets.svg import size_of
 from tests.helpers import words_in
 from tests.test_notebooks import LESSONS, load, section, source
 

@@ -36,7 +36,7 @@ def test_the_list_is_what_the_script_makes():
     rows = json.loads((make.FOLDER / "slips.json").read_text(encoding="utf-8"))
     assert rows == [{key: value for key, value in slip.items() if key != "code"} for slip in MUTANTS]
     assert Counter(row["task"] for row in rows) == dict.fromkeys(CHECKS, make.EACH)
-    assert len(CHECKS) == 35
+    assert len(CHECKS) == 36
 
 
 @pytest.mark.parametrize("task", sorted(LESSONS))
@@ -115,9 +115,9 @@ STUDENTS = [  # (task, what the student wrote, the line, words in what is told)
         "an axis",
     ),
     (
-        "weighted_accuracy",
+        "parts",
         """
-        def weighted_accuracy(found, true, pairs, tolerance):
+        def parts(found, true, pairs, tolerance):
             n_center = n_shape = n_size = 0
             for f, t in pairs:
                 n_center += sum(found[f].centroid - true[t].centroid <= tolerance)
@@ -130,7 +130,7 @@ STUDENTS = [  # (task, what the student wrote, the line, words in what is told)
                     n_size += sum(min(errors, key=sum) <= tolerance)
             sizes = sum(len(shape.dimensions) for shape in true)
             alarms = len(found) - len(pairs)
-            return 0.4 * n_shape / (len(true) + alarms) + 0.3 * n_center / (2 * len(true)) + 0.3 * n_size / sizes
+            return n_shape / (len(true) + alarms), n_center / (2 * len(true)), n_size / sizes
         """,
         5,
         "a sign",

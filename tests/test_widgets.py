@@ -18,13 +18,11 @@ from primkit.widgets.drawing import (
     board_frame,
     picture,
     round_ticks,
-    sentence,
     side_by_side,
-    size_of,
     square_frame,
-    what_it_says,
 )
 from primkit.widgets.slider import Choice, Explorer, Slider, explore
+from primkit.widgets.svg import sentence, size_of, what_it_says
 from tests.helpers import svg_in, words_in
 
 SLIDERS = {factory.__name__: factory for factory in pk.widgets.SLIDERS}

@@ -25,7 +25,7 @@ from .edges import fit_line, inliers_of, line_through, ransac_line
 from .groups import assign_points, silhouette, update_centers
 from .naming import fair_choice, meet, sides_and_centroid
 from .rays import ray_circle, ray_segment
-from .scoring import match_shapes, weighted_accuracy
+from .scoring import match_shapes, parts, right
 
 __all__ = ["ray_segment", "ray_circle", "to_cells", "occupy", "assign_points", "update_centers", "silhouette"]
 __all__ += ["line_through", "inliers_of", "fit_line", "ransac_line", "fit_circle", "circle_rms"]
@@ -34,7 +34,8 @@ __all__ += [
     "sides_and_centroid",
     "fair_choice",
     "match_shapes",
-    "weighted_accuracy",
+    "right",
+    "parts",
     "drive_step",
     "share_seen",
 ]

@@ -22,7 +22,7 @@ from ..lines import fit_line as best_fit
 from ..ransac import run_ransac
 from .answer import Case, Check, Fault, off_only_where
 from .cases import Args
-from .judges import CLOSE, array, as_line, is_pair, line, no_return, number, shown
+from .judges import CLOSE, array, as_line, as_marks, is_pair, line, marks, no_return, number, shown
 from .walls import bands, clouds, pairs, scenes
 
 Pair = tuple[float, float]  # angle and offset of a line
@@ -61,24 +61,6 @@ def best_of(points: Floats, threshold: float, trials: int, rng: Any) -> tuple[Pa
     return (angle, offset), found.inliers
 
 
-def _mask(value: Any, n: int) -> Bools | None:
-    """Return a result as n times True or False; None for what is something else."""
-    try:
-        mask = np.asarray(value)
-    except ValueError:
-        return None
-    return mask if mask.shape == (n,) and mask.dtype == bool else None
-
-
-def _judge_mask(got: Any, expected: Any, _args: Args) -> str | None:
-    """Judge which points are inliers."""
-    mask = _mask(got, len(expected))
-    if mask is None:
-        return f"got {shown(got)}, expected True or False for each of the {len(expected)} points{no_return(got)}"
-    extra, missing = int((mask & ~expected).sum()), int((~mask & expected).sum())
-    return f"{extra} points too many are inliers, and {missing} too few" if extra or missing else None
-
-
 NOT_ITS_OWN, NOT_REFITTED, FEW = "not those within the threshold of the line", "best fit of its own inliers", "got only"
 
 
@@ -89,7 +71,7 @@ def _judge_consensus(got: Any, expected: Any, args: Args) -> str | None:
     if expected is None or got is None:
         return None if got is expected else f"got {shown(got)}, expected {wanted}{no_return(got)}"
     pair = got if is_pair(got) else (None, None)
-    own, mask = as_line(pair[0]), _mask(pair[1], len(points))
+    own, mask = as_line(pair[0]), as_marks(pair[1], len(points))
     if own is None or mask is None or not np.isfinite(own).all():
         return f"got {shown(got)}, expected {wanted}"
     distance = np.abs(points @ (np.cos(own[0]), np.sin(own[0])) - own[1])
@@ -205,7 +187,7 @@ inliers_of = Check(
     "inliers_of",
     near,
     bands,
-    _judge_mask,
+    marks("points", "inliers"),
     (
         Fault(
             "That is how many they are: asked for is True or False for each point.",

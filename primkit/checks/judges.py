@@ -86,6 +86,19 @@ def groups() -> Judge:
     return judge
 
 
+def marks(of: str, called: str) -> Judge:
+    """Judge True or False for each of some ``of``, which are ``called`` something where it is True."""
+
+    def judge(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None:
+        mine = as_marks(got, len(expected))
+        if mine is None:
+            return f"got {shown(got)}, expected True or False for each of the {len(expected)} {of}{no_return(got)}"
+        extra, missing = int((mine & ~expected).sum()), int((~mine & expected).sum())
+        return f"{extra} {of} too many are {called}, and {missing} too few" if extra or missing else None
+
+    return judge
+
+
 def points_in_any_order(unit: str = "m", tolerance: float = 1e-6) -> Judge:
     """Judge points, shape (K, 2), such as corners, in any order."""
 
@@ -148,6 +161,15 @@ def line(tolerance: float = 1e-6) -> Judge:
         return None if off <= tolerance else f"the line has the right direction, but is off by {shown(1000 * off)} mm"
 
     return judge
+
+
+def as_marks(value: Any, n: int) -> NDArray[np.bool_] | None:
+    """Return a result as n times True or False; None for what is something else."""
+    try:
+        found = np.asarray(value)
+    except ValueError:
+        return None
+    return found.astype(bool) if found.shape == (n,) and (found.dtype == bool or n == 0) else None
 
 
 def as_circle(value: Any) -> tuple[float, float, float] | None:

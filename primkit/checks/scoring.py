@@ -1,6 +1,7 @@
-"""Scoring: which found shape stands for which true one, and the weighted accuracy; the checks of lesson 07.
+"""Scoring: which found shape stands for which true one, what is right, and its shares; the checks of lesson 07.
 
-In:  the student's ``match_shapes(found, true, gate)`` and ``weighted_accuracy(found, true, pairs, tolerance)``.
+In:  the student's ``match_shapes(found, true, gate)``, ``right(errors, tolerance)`` and
+     ``parts(found, true, pairs, tolerance)``.
 Out: answers. Pairs may come in any order; where two pairings are equally short, either is right.
 
 >>> match_shapes(lambda found, true, gate: ...)
@@ -17,21 +18,20 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import ROUNDING, Floats
+from ..arguments import ROUNDING, Bools, Floats
 from ..evaluation import match
-from ..report import CENTER_WEIGHT, DIMENSION_WEIGHT, SHAPE_WEIGHT
 from ..shapes import Circle, Polygon, Shape
 from ..world import random_world
 from .answer import Check, Fault
 from .cases import UNDECIDED, Args, around, random_cases
-from .judges import CLOSE, no_return, number, shown
+from .judges import CLOSE, array, marks, no_return, shown
 
 Pairs = list[tuple[int, int]]
 
 SCORING_CASES = 120  # of each check: they take longer than other lessons'
 GATE, TOLERANCE = 0.1, 0.005  # m
 OPEN_GATE = 10.0  # m: lets everything through
-WEIGHTS = (SHAPE_WEIGHT, CENTER_WEIGHT, DIMENSION_WEIGHT)
+RIGHT_CASES = 60
 
 
 # --- one-to-one pairs -------------------------------------------------------------------------------------------
@@ -164,24 +164,54 @@ match_shapes = Check(
 )
 
 
-# --- the score --------------------------------------------------------------------------------------------------
+# --- what is right ----------------------------------------------------------------------------------------------
 
 
-def score(found: Sequence[Shape], true: Sequence[Shape], pairs: Pairs, tolerance: float) -> float:
-    """Return the weighted accuracy, 0 to 1, of found shapes with their pairs (index found, index true).
-
-    ``tolerance`` in metres; ``true`` holds one shape at least.
-    """
-    return _score_with(found, true, pairs, tolerance)
+def within(errors: Floats, tolerance: float) -> Bools:
+    """Return which errors are at most the tolerance, on either side; both in metres."""
+    return np.abs(errors) <= tolerance
 
 
-def _score_with(
+def _right_cases(rng: np.random.Generator) -> Iterator[Args]:
+    """Yield errors on both sides, on the edge, and none at all, then random ones."""
+    yield np.array([0.004, -0.004, 0.02, -0.02]), TOLERANCE
+    yield np.array([0.125, -0.125, 0.25]), 0.125  # on the edge is right
+    yield np.empty(0), TOLERANCE
+
+    def draw(_n: int) -> Args | None:
+        errors, tolerance = rng.normal(0, TOLERANCE, int(rng.integers(1, 9))), float(rng.choice([0.001, TOLERANCE]))
+        return (errors, tolerance) if np.abs(np.abs(errors) - tolerance).min() > UNDECIDED else None
+
+    yield from random_cases(draw, RIGHT_CASES)
+
+
+right = Check(
+    "right",
+    within,
+    _right_cases,
+    marks("errors", "right"),
+    (
+        Fault(
+            "Values that are far too small count as right: is there an absolute value?",
+            like=lambda errors, tolerance: errors <= tolerance,
+        ),
+        Fault("Exactly the tolerance is still right: < or <= ?", like=lambda errors, limit: np.abs(errors) < limit),
+        Fault("Those are the wrong ones.", like=lambda errors, tolerance: ~within(errors, tolerance)),
+    ),
+)
+
+
+# --- the three parts of the score -------------------------------------------------------------------------------
+
+Parts = tuple[float, float, float]
+
+
+def shares(
     found: Sequence[Shape],
     true: Sequence[Shape],
     pairs: Pairs,
     tolerance: float,
     *,
-    weights: tuple[float, float, float] = WEIGHTS,
     absolute: bool = True,
     shift: bool = True,
     misses: bool = True,
@@ -190,10 +220,14 @@ def _score_with(
     all_found: bool = False,
     sides_of_any: bool = False,
     kind_first: bool = False,
-) -> float:
-    """Score; each option that is not at its default is a usual fault."""
+    per: float = 1.0,
+) -> Parts:
+    """Return shape, centre and dimension accuracy, 0 to 1, of found shapes with their pairs (index found, index true).
 
-    def right(errors: Iterable[float]) -> int:
+    ``tolerance`` in metres; ``true`` holds one shape at least. Each option that is not at its default is a usual fault.
+    """
+
+    def count(errors: Iterable[float]) -> int:
         return sum((abs(e) if absolute else e) <= tolerance + ROUNDING for e in errors)
 
     matched = [(found[f], true[t]) for f, t in pairs]
@@ -201,15 +235,16 @@ def _score_with(
     false_alarms = (len(found) - (0 if all_found else len(pairs))) if alarms else 0
     same_kind = [(f, t) for f, t in matched if f.kind == t.kind]
     center = [f.centroid - t.centroid for f, t in (same_kind if kind_first else matched)]
-    n_center = sum(float(np.hypot(*e)) <= tolerance for e in center) if together else sum(map(right, center))
+    n_center = sum(float(np.hypot(*e)) <= tolerance for e in center) if together else sum(map(count, center))
     sized = matched if sides_of_any else same_kind
-    n_dimension = sum(right(_dimension_errors(f, t, shift=shift)) for f, t in sized)
-    parts = (
+    n_dimension = sum(count(_dimension_errors(f, t, shift=shift)) for f, t in sized)
+    ways = (
         (len(same_kind), len(counted) + false_alarms),
         (n_center, len(counted) * (1 if together else 2)),
         (n_dimension, sum(len(t.dimensions) for t in counted)),
     )
-    return sum(w * n / total for w, (n, total) in zip(weights, parts, strict=True) if total)
+    a_s, a_c, a_d = (per * n / total if total else 0.0 for n, total in ways)
+    return a_s, a_c, a_d
 
 
 def _dimension_errors(found: Shape, true: Shape, *, shift: bool = True) -> list[float]:
@@ -221,7 +256,7 @@ def _dimension_errors(found: Shape, true: Shape, *, shift: bool = True) -> list[
     return min(((np.roll(ours, n) - theirs) for n in shifts), key=lambda e: float(np.abs(e).sum())).tolist()
 
 
-def _score_cases(rng: np.random.Generator) -> Iterator[Args]:
+def _parts_cases(rng: np.random.Generator) -> Iterator[Args]:
     """Yield circles that are right, large, small, missed or too many, then random boards with errors of all sorts."""
     a, b = Circle((0.0, 0.0), 0.06), Circle((0.2, 0.0), 0.08)
     yield [a, b], [a, b], [(0, 0), (1, 1)], TOLERANCE
@@ -272,46 +307,42 @@ def _is_clear(found: Sequence[Shape], true: Sequence[Shape], pairs: Pairs, toler
     return all(abs(abs(e) - tolerance) > UNDECIDED for e in errors)
 
 
-weighted_accuracy = Check(
-    "weighted_accuracy",
-    score,
-    _score_cases,
-    number(),
+parts = Check(
+    "parts",
+    shares,
+    _parts_cases,
+    array(),
     (
         Fault(
             "Values that are far too small count as right: is there an absolute value?",
-            like=partial(_score_with, absolute=False),
+            like=partial(shares, absolute=False),
         ),
-        Fault("False alarms cost nothing: each is one more wrong shape.", like=partial(_score_with, alarms=False)),
+        Fault("False alarms cost nothing: each is one more wrong shape.", like=partial(shares, alarms=False)),
         Fault(
             "Missed shapes cost nothing: divide by what is in the truth, not by what was matched.",
-            like=partial(_score_with, misses=False),
+            like=partial(shares, misses=False),
         ),
         Fault(
             "Neither misses nor false alarms cost anything: finding less must not score more.",
-            like=partial(_score_with, misses=False, alarms=False),
-        ),
-        Fault(
-            "The three parts do not weigh the same: 0.4, 0.3 and 0.3.",
-            like=partial(_score_with, weights=(1 / 3, 1 / 3, 1 / 3)),
+            like=partial(shares, misses=False, alarms=False),
         ),
         Fault(
             "Sides are compared in the order of the lists: the first corner of one may be another's second.",
-            like=partial(_score_with, shift=False),
+            like=partial(shares, shift=False),
         ),
-        Fault("x and y of a centre count separately.", like=partial(_score_with, together=True)),
+        Fault("x and y of a centre count separately.", like=partial(shares, together=True)),
         Fault(
             "F counts false alarms alone: found shapes that stand in no pair.",
-            like=partial(_score_with, all_found=True),
+            like=partial(shares, all_found=True),
         ),
         Fault(
             "Sides and radii are compared across kinds: dimensions count only where the kind is right.",
-            like=partial(_score_with, sides_of_any=True),
+            like=partial(shares, sides_of_any=True),
         ),
         Fault(
             "Centres are compared only where the kind is right: they count for every pair.",
-            like=partial(_score_with, kind_first=True),
+            like=partial(shares, kind_first=True),
         ),
-        Fault("That is in per cent: a score goes from 0 to 1.", like=partial(_score_with, weights=(40.0, 30.0, 30.0))),
+        Fault("That is in per cent: a share goes from 0 to 1.", like=partial(shares, per=100.0)),
     ),
 )

@@ -17,7 +17,6 @@ Out: an ``Explorer``; its ``draw(**values)`` returns the picture as SVG text.
 from .arcs import arcs, show_circles
 from .boards import boards
 from .cells import cells
-from .drawing import what_it_says
 from .edges import edges, show_lines
 from .groups import groups
 from .naming import fit_each_kind, naming
@@ -25,6 +24,7 @@ from .predictions import answer, guesses, predict, read_quiz
 from .rays import rays
 from .scoring import scoring
 from .slider import Choice, Explorer, Slider, explore
+from .svg import what_it_says
 from .wheels import wheels
 
 # The lessons' sliders, in the order of the lessons: tests move each of them to all corners of its box.

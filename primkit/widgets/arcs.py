@@ -2,7 +2,7 @@
 
 >>> arcs()
 Slider: arc, noise, seed, show
->>> from primkit.widgets.drawing import what_it_says
+>>> from primkit.widgets.svg import what_it_says
 >>> what_it_says(arcs().draw(arc=60, noise=0.0))  # doctest: +ELLIPSIS
 '60 degrees, noise 0 mm, true radius 100 mm: mean 26 mm, Kasa 100 mm, ...'
 """

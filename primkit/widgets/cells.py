@@ -19,8 +19,9 @@ from ..palette import BLUE, GREY, INK, ORANGE, PALE, SKY, VERMILION
 from ..shapes import Circle
 from ..table import count
 from ..world import World
-from .drawing import Frame, path, picture, signed, square_frame
+from .drawing import Frame, picture, square_frame
 from .slider import Choice, Explorer, Picture, Slider, explore
+from .svg import path, signed
 
 DRIVEN_CIRCLE = Circle((0.0036, -0.0047), 0.06)  # not in the middle of a cell, nor on a border
 DRIVING_RADIUS = 0.13  # m: the robot drives round the circle at this distance from its centre

@@ -17,9 +17,9 @@ and stands below it beside a slider.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from html import escape, unescape
+from html import unescape
 from typing import Any
 
 import numpy as np
@@ -27,17 +27,21 @@ from numpy.typing import ArrayLike
 
 from ..palette import BLUE, GREY, INK, KIND_COLORS, PALE, legible
 from ..shapes import Circle, Shape
+from .svg import (
+    LETTER_SIZE,
+    MARK_CONTRAST,
+    PIXEL_TIE,
+    as_svg,
+    path,
+    signed,
+    size_of,
+    tenth,
+    through,
+    what_it_says,
+    words_at,
+)
 
 PAD_LEFT, PAD_RIGHT, PAD_TOP, PAD_BOTTOM = 60, 15, 30, 45  # px around the axes: numbers, names, title
-LETTER_SIZE = 12  # px: the size of all letters but the title's
-SVG_FONT = "font-family='DejaVu Sans, Verdana, sans-serif'"
-WIDEST_PICTURE = 860  # px: what fits beside a notebook's margin on most screens; a wider picture is shown smaller
-PIXEL_TIE = 1e-6  # px: lifts 0.25 and its like over the edge, where rounding could go either way
-
-LETTER_CONTRAST, MARK_CONTRAST = (
-    4.5,
-    3.0,
-)  # least contrasts to white, as WCAG 2 has them; areas and what is pale on purpose have less
 LEGEND_LEFT, LEGEND_ROW = 22, 22  # px
 ENTRY = re.compile(r'<g class="entry" transform="[^"]*">(.*?)</g>')
 
@@ -99,14 +103,14 @@ class Frame:
         r = size / 2
         if marker == "ring":
             turn = f"a{r:g} {r:g} 0 1 0 {2 * r:g} 0a{r:g} {r:g} 0 1 0 {-2 * r:g} 0"
-            moves = "".join(f"M{_n(x - r)} {y:g}{turn}" for x, y in places)
+            moves = "".join(f"M{tenth(x - r)} {y:g}{turn}" for x, y in places)
             return path(moves, stroke=color, stroke_width=1.5)
         if marker == "cross":
             strokes = f"l{size:g} {size:g}m{-size:g} 0l{size:g} {-size:g}"
-            moves = "".join(f"M{_n(x - r)} {_n(y - r)}{strokes}" for x, y in places)
+            moves = "".join(f"M{tenth(x - r)} {tenth(y - r)}{strokes}" for x, y in places)
             return path(moves, stroke=color, stroke_width=1.8)
         outlines = ([(x + r * dx, y + r * dy) for dx, dy in MARKERS[marker]] for x, y in places)
-        return path("".join(f"{_through(outline)}Z" for outline in outlines), fill=color)
+        return path("".join(f"{through(outline)}Z" for outline in outlines), fill=color)
 
     def segments(self, starts: ArrayLike, ends: ArrayLike, color: str = GREY, width: float = 1, dash: str = "") -> str:
         """Draw a straight stroke from each start to its end, shape (N, 2) each; ``dash`` as in "4 3"."""
@@ -116,11 +120,11 @@ class Frame:
 
     def polyline(self, points: ArrayLike, color: str = BLUE, width: float = 2, dash: str = "") -> str:
         """Draw a line through points, shape (N, 2)."""
-        return path(_through(self.at(points)), stroke=color, stroke_width=width, stroke_dasharray=dash)
+        return path(through(self.at(points)), stroke=color, stroke_width=width, stroke_dasharray=dash)
 
     def area(self, points: ArrayLike, color: str = BLUE, opacity: float = 0.2) -> str:
         """Fill the polygon with corners, shape (N, 2)."""
-        return path(_through(self.at(points)) + "Z", fill=color, fill_opacity=opacity)
+        return path(through(self.at(points)) + "Z", fill=color, fill_opacity=opacity)
 
     def circle(
         self, center: ArrayLike, radius: float, color: str = BLUE, width: float = 2, dash: str = "", fill: float = 0
@@ -129,7 +133,7 @@ class Frame:
         ((x, y),) = self.at(center)
         inside = f'fill="{color}" fill-opacity="{fill:g}"' if fill else 'fill="none"'
         line, color = f' stroke-dasharray="{dash}"' if dash else "", legible(color, MARK_CONTRAST)
-        r = _n(abs(radius) * self.scale[0])
+        r = tenth(abs(radius) * self.scale[0])
         return f'<circle cx="{x:g}" cy="{y:g}" r="{r}" {inside} stroke="{color}" stroke-width="{width:g}"{line}/>'
 
     def shape(self, shape: Shape, color: str = "", width: float = 2, dash: str = "", fill: float = 0.2) -> str:
@@ -138,7 +142,7 @@ class Frame:
         if isinstance(shape, Circle):
             return self.circle(shape.center, shape.radius, color, width, dash, fill)
         edge: dict[str, Any] = {"stroke": color, "stroke_width": width, "stroke_dasharray": dash} if width else {}
-        return path(_through(self.at(shape.vertices)) + "Z", fill=color, fill_opacity=fill, **edge)
+        return path(through(self.at(shape.vertices)) + "Z", fill=color, fill_opacity=fill, **edge)
 
     def robot(self, pose: ArrayLike, color: str = INK, size: float = 9) -> str:
         """Draw the robot at a pose (x, y, heading) as an arrow head; ``size`` in pixels."""
@@ -146,7 +150,7 @@ class Frame:
         ((px, py),) = self.at([(x, y)])
         ahead, aside = np.array([np.cos(heading), -np.sin(heading)]), np.array([np.sin(heading), np.cos(heading)])
         corners = [(px, py) + size * v for v in (1.2 * ahead, aside * 0.8 - 0.9 * ahead, -0.8 * aside - 0.9 * ahead)]
-        return path(_through(corners) + "Z", fill=color, stroke="white", stroke_width=1)
+        return path(through(corners) + "Z", fill=color, stroke="white", stroke_width=1)
 
     def text(
         self,
@@ -207,8 +211,8 @@ def picture(
     ((425, 447), True)
     """
     (left, bottom), (right, top) = frame.at([(frame.x[0], frame.y[0]), (frame.x[1], frame.y[1])])
-    window = f'x="{left:g}" y="{top:g}" width="{_n(right - left)}" height="{_n(bottom - top)}"'
-    view = f'viewBox="{left:g} {top:g} {_n(right - left)} {_n(bottom - top)}"'
+    window = f'x="{left:g}" y="{top:g}" width="{tenth(right - left)}" height="{tenth(bottom - top)}"'
+    view = f'viewBox="{left:g} {top:g} {tenth(right - left)} {tenth(bottom - top)}"'
     inside = f'<svg {window} {view} overflow="hidden">{"".join(parts)}</svg>'
     heading = words_at(left, 19, title, color=INK, size=_fitting(title, frame.width - left - 4), bold=True)
     own = f'<g transform="translate(0 {frame.height - PAD_TOP // 2})">{below}</g>' if below else ""
@@ -225,7 +229,7 @@ def _in_rows(entries: Sequence[str], width: int, top: int) -> tuple[str, int]:
         wide = 24 + 0.6 * LETTER_SIZE * len(unescape(letters[1]) if letters else "")
         if x > LEGEND_LEFT and x + wide > width:
             x, row = LEGEND_LEFT, row + 1
-        place = f"{_n(x)} {top + LEGEND_ROW * row - 12}"
+        place = f"{tenth(x)} {top + LEGEND_ROW * row - 12}"
         placed.append(f'<g class="entry" transform="translate({place})">{entry}</g>')
         x += wide + 14
     return "".join(placed), LEGEND_ROW * row if placed else 0
@@ -259,63 +263,6 @@ def stacked(pictures: Sequence[str]) -> str:
     return as_svg(size_of(pictures[0])[0], sum(heights), says, says, "".join(placed))
 
 
-def sentence(width: int, height: int, words: str) -> str:
-    """Return a picture that is a sentence: for when there is nothing else to draw."""
-    lines, line = [], ""
-    for word in words.split():
-        if line and len(line) + len(word) > width / (0.62 * 14):
-            lines.append(line)
-            line = word
-        else:
-            line = f"{line} {word}".strip()
-    body = "".join(words_at(20, 40 + 20 * n, part, size=14) for n, part in enumerate([*lines, line]))
-    return as_svg(width, height, words, words, body)
-
-
-def what_it_says(svg: str) -> str:
-    """Return the sentence that was given to ``picture`` as ``says``."""
-    found = re.search(r"<desc>(.*?)</desc>", svg, re.DOTALL)
-    return unescape(found[1]) if found else ""
-
-
-def size_of(svg: str) -> tuple[int, int]:
-    """Return width and height of a picture in pixels."""
-    found = re.search(r'viewBox="0 0 (\d+) (\d+)"', svg)
-    if found is None:
-        raise ValueError("a picture must be SVG text from picture(), got something without a viewBox")
-    return int(found[1]), int(found[2])
-
-
-def path(moves: str, *, fill: str = "none", stroke: str = "", **look: str | float) -> str:
-    """Return a path with its look: ``stroke_width=2`` becomes ``stroke-width="2"``; what is empty is left out."""
-    fill = fill if "fill_opacity" in look else legible(fill, MARK_CONTRAST)
-    line: dict[str, str | float] = {"stroke": legible(stroke, MARK_CONTRAST)}
-    given = {name.replace("_", "-"): value for name, value in (line | look).items() if value != ""}
-    written = "".join(f' {k}="{v if isinstance(v, str) else f"{v:g}"}"' for k, v in given.items())
-    return f'<path d="{moves}"{written} fill="{fill}"/>' if moves else ""
-
-
-def words_at(
-    x: float,
-    y: float,
-    words: str,
-    *,
-    color: str = "#444444",
-    anchor: str = "start",
-    size: float = LETTER_SIZE,
-    bold: bool = False,
-    rim: bool = False,
-    turned: bool = False,
-) -> str:
-    """Return words at a pixel; ``rim`` puts white around the letters, ``turned`` writes them upwards."""
-    look = f'font-size="{size:g}" fill="{legible(color, LETTER_CONTRAST)}"'
-    look += f' text-anchor="{anchor}"' if anchor != "start" else ""
-    look += ' font-weight="bold"' if bold else ""
-    look += ' stroke="white" stroke-width="3" paint-order="stroke"' if rim else ""
-    look += f' transform="rotate(-90 {_n(x)} {_n(y)})"' if turned else ""
-    return f'<text x="{_n(x)}" y="{_n(y)}" {look}>{escape(words)}</text>'
-
-
 def round_ticks(low: float, high: float) -> tuple[float, ...]:
     """Return at most six round numbers from low to high.
 
@@ -330,23 +277,11 @@ def round_ticks(low: float, high: float) -> tuple[float, ...]:
     return tuple((np.round(np.arange(first, last + 1) * step, 10) + 0.0).tolist())
 
 
-def as_svg(width: int, height: int, title: str, says: str, body: str) -> str:
-    """Return an SVG with a white ground that shrinks to narrow columns, and what is said to who cannot see it."""
-    shown = min(1.0, WIDEST_PICTURE / width)
-    size = f'width="{_n(shown * width)}" height="{_n(shown * height)}" viewBox="0 0 {width} {height}"'
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" {size} '
-        f'role="img" style="max-width:100%;height:auto" {SVG_FONT}>'
-        f"<title>{escape(title)}</title><desc>{escape(says)}</desc>"
-        f'<rect width="{width}" height="{height}" fill="white"/>{body}</svg>'
-    )
-
-
 def _sign(x: float, y: float, color: str, sign: str) -> str:
     """Draw the sign of a legend's entry, 18 px wide, from (x, y) on."""
     if sign in ("line", "dashed"):
         dash = "5 3" if sign == "dashed" else ""
-        return path(f"M{_n(x)} {_n(y)}h18", stroke=color, stroke_width=2, stroke_dasharray=dash)
+        return path(f"M{tenth(x)} {tenth(y)}h18", stroke=color, stroke_width=2, stroke_dasharray=dash)
     # A frame of its own in which one unit is one pixel, and (0, 0) the middle of the sign.
     here = Frame(
         (PAD_LEFT - x - 9, PAD_LEFT - x - 8),
@@ -355,21 +290,6 @@ def _sign(x: float, y: float, color: str, sign: str) -> str:
         height=PAD_TOP + PAD_BOTTOM + 1,
     )
     return here.points([(0, 0)], color, sign, 8)
-
-
-def _through(pixels: Iterable[Iterable[float]]) -> str:
-    """Return the moves through pixels."""
-    return "M" + "L".join(f"{_n(x)} {_n(y)}" for x, y in pixels)
-
-
-def _n(value: float) -> str:
-    """Return a pixel as text, with a tenth at most."""
-    return f"{round(value + PIXEL_TIE, 1) + 0.0:g}"
-
-
-def signed(value: float) -> str:
-    """Return a number with a true minus sign."""
-    return f"{value:g}".replace("-", "\u2212")
 
 
 def _fitting(title: str, room: float) -> float:

@@ -2,7 +2,7 @@
 
 >>> edges()
 Slider: trial, threshold, noise, seed
->>> from primkit.widgets.drawing import what_it_says
+>>> from primkit.widgets.svg import what_it_says
 >>> what_it_says(edges().draw(trial=1))
 'Trial 1 draws two points and finds 10 inliers of 435; the best so far is trial 1 with 10.'
 """

@@ -32,8 +32,9 @@ from ..arguments import short
 from ..formats.files import write_atomically
 from ..palette import BLUE, GREY, INK, PALE, VERMILION
 from ..table import Table
-from .drawing import as_svg, path, stacked, what_it_says, words_at
+from .drawing import stacked
 from .slider import Picture
+from .svg import as_svg, path, what_it_says, words_at
 
 KEPT_IN = "my_guesses.json"
 ANSWER_WIDTH, OPTION_ROW = 425, 26  # px: of the picture, and of an option in it

@@ -28,7 +28,8 @@ from typing import Any
 
 from ..arguments import short
 from ..themed import in_theme, themed
-from .drawing import sentence, side_by_side, size_of, what_it_says
+from .drawing import side_by_side
+from .svg import sentence, size_of, what_it_says
 
 Draw = Callable[..., str]
 

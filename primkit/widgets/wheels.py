@@ -2,7 +2,7 @@
 
 >>> wheels()
 Slider: left, right, seconds, pieces
->>> from primkit.widgets.drawing import what_it_says
+>>> from primkit.widgets.svg import what_it_says
 >>> what_it_says(wheels().draw(left=3.0, right=3.0, seconds=2.0, pieces=1))
 'Both wheels at 3 rad/s for 2 s: straight on for 123 mm; 1 straight piece ends 0 mm off.'
 """

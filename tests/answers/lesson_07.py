@@ -1,4 +1,4 @@
-"""Lesson 07: which found shape stands for which true one, and the weighted accuracy."""
+"""Lesson 07: which found shape stands for which true one, which errors are right, and the three parts of the score."""
 
 # ruff: noqa: ARG001, ARG005 (a wrong answer may leave out what it is given)
 
@@ -137,7 +137,6 @@ def marks(
     missed=True,
     alarms=True,
     per=1.0,
-    w=(4, 3, 3),
     paired=0,
     kind_first=False,
     any_kind=False,
@@ -156,8 +155,7 @@ def marks(
         center += [there and sided(mine.centroid[i] - truth.centroid[i]) <= tolerance for i in (0, 1)]
         errors = sides(mine, truth) if same or (any_kind and mine is not None) else [np.inf] * len(truth.dimensions)
         dimension += [sided(e) <= tolerance for e in errors]
-    parts = [sum(part) / len(part) if part else 0.0 for part in (shape, center, dimension)]
-    return per * sum(a * b for a, b in zip(w, parts, strict=True)) / sum(w)
+    return [per * sum(part) / len(part) if part else 0.0 for part in (shape, center, dimension)]
 
 
 def wrong(**fault):
@@ -179,16 +177,21 @@ def across_kinds(found, true):
 def by_distance(found, true, pairs, tolerance):
     partner = {t: found[f] for f, t in pairs}
     away = [math.dist(partner[t].centroid, s.centroid) for t, s in enumerate(true) if t in partner]
-    others = marks(found, true, pairs, tolerance, w=(4, 0, 3)) * 0.7
-    return others + 0.3 * sum(d <= tolerance for d in away) / len(true)
+    shape, _, dimension = marks(found, true, pairs, tolerance)
+    return shape, sum(d <= tolerance for d in away) / len(true), dimension
 
 
 def counted(found, true, pairs, tolerance):
-    return len(pairs) / len(true)
+    return 3 * (len(pairs) / len(true),)
 
 
 def by_matches(found, true, pairs, tolerance):
-    return sum(found[f].kind == true[t].kind for f, t in pairs) / len(pairs)
+    return 3 * (sum(found[f].kind == true[t].kind for f, t in pairs) / len(pairs),)
+
+
+def in_one(found, true, pairs, tolerance):
+    a_s, a_c, a_d = marks(found, true, pairs, tolerance)
+    return 0.4 * a_s + 0.3 * a_c + 0.3 * a_d
 
 
 ANSWERS = {
@@ -223,28 +226,41 @@ ANSWERS = {
             ),
         },
     },
-    "weighted_accuracy": {
+    "right": {
+        "right": {"within": lambda errors, tolerance: np.abs(errors) <= tolerance},
+        "wrong": {
+            "no absolute value": (lambda errors, tolerance: errors <= tolerance, "is there an absolute value?"),
+            "strict": (lambda errors, tolerance: np.abs(errors) < tolerance, "< or <= ?"),
+            "the wrong ones": (lambda errors, tolerance: np.abs(errors) > tolerance, "Those are the wrong ones"),
+            "how many": (lambda errors, tolerance: int((np.abs(errors) <= tolerance).sum()), "for each of the"),
+            "all or none": (lambda errors, tolerance: bool(np.all(np.abs(errors) <= tolerance)), "for each of the"),
+            "nothing": (lambda errors, tolerance: None, "is there a return?"),
+        },
+        "error": {"a number alone": (lambda errors, tolerance: [abs(errors[0]) <= tolerance], "raised IndexError")},
+    },
+    "parts": {
         "right": {"marks": marks},
         "wrong": {
             "no absolute value": (wrong(sided=float), "is there an absolute value?"),
             "no false alarms": (wrong(alarms=False), "False alarms cost nothing"),
             "no misses": (wrong(missed=False), "Missed shapes cost nothing"),
             "neither": (wrong(missed=False, alarms=False), "Neither misses nor false alarms"),
-            "equal weights": (wrong(w=(1, 1, 1)), "do not weigh the same"),
+            "in one": (in_one, "expected shape (3,)"),
+            "turned round": (lambda *args: marks(*args)[::-1], "expected"),
             "list order": (wrong(sides=in_list_order), "in the order of the lists"),
             "distance": (by_distance, "x and y of a centre count separately"),
             "per cent": (wrong(per=100.0), "in per cent"),
             "all found": (wrong(paired=1), "F counts false alarms alone"),
             "across kinds": (wrong(any_kind=True, sides=across_kinds), "compared across kinds"),
             "kind first": (wrong(kind_first=True), "they count for every pair"),
-            "counted": (counted, "For example weighted_accuracy("),
+            "counted": (counted, "For example parts("),
             "of a type": (
                 wrong(kind=type),
-                "For example weighted_accuracy(found=[rectangle at (0, 0)], true=[triangle at (0, 0)]",
+                "For example parts(found=[rectangle at (0, 0)], true=[triangle at (0, 0)]",
             ),
             "a circle or none": (
                 wrong(kind=lambda shape: shape.kind == "circle"),
-                "For example weighted_accuracy(found=[rectangle at (0, 0)], true=[triangle at (0, 0)]",
+                "For example parts(found=[rectangle at (0, 0)], true=[triangle at (0, 0)]",
             ),
             "below the tolerance": (
                 lambda found, true, pairs, tolerance: marks(found, true, pairs, tolerance - 1e-9),

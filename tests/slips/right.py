@@ -193,7 +193,14 @@ def match_shapes(found, true, gate):
     return best
 
 
-def weighted_accuracy(found, true, pairs, tolerance):
+def right(errors, tolerance):
+    marks = []
+    for i in range(len(errors)):
+        marks.append(abs(errors[i]) <= tolerance)
+    return np.array(marks, dtype=bool)
+
+
+def parts(found, true, pairs, tolerance):
     n_shape = n_center = n_dimension = 0
     for f, t in pairs:
         mine, truth = found[f], true[t]
@@ -211,7 +218,7 @@ def weighted_accuracy(found, true, pairs, tolerance):
         n_dimension += np.sum(best <= tolerance)
     alarms = len(found) - len(pairs)
     total = sum(len(shape.dimensions) for shape in true)
-    return 0.4 * n_shape / (len(true) + alarms) + 0.3 * n_center / (2 * len(true)) + 0.3 * n_dimension / total
+    return n_shape / (len(true) + alarms), n_center / (2 * len(true)), n_dimension / total
 
 
 def drive_step(pose, left, right, seconds):
