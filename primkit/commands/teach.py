@@ -14,7 +14,7 @@ from typing import Any
 
 from ..course.untrusted import UNTRUSTED_WORDS
 from ..table import Table, count
-from .words import LOOK, Parser, path, say, whole
+from .words import LOOK, Parser, path, say, tell_faults, whole
 
 TEACH_TEXT = "run a course: release problem sets, grade them, see how the class did"
 TEACH_EXAMPLES = """\
@@ -90,13 +90,7 @@ def _check(arguments: argparse.Namespace) -> None:
     from ..course.checking import check
     from ..course.course import Course
 
-    findings = check(Course(arguments.course or Path()))
-    for finding in findings:
-        say(str(finding))
-    faults = sum(not finding.fine for finding in findings)
-    say(f"{count(faults, 'fault')} found" if faults else "All is there.")
-    if faults:
-        raise SystemExit(1)
+    tell_faults(check(Course(arguments.course or Path())))
 
 
 def _release(arguments: argparse.Namespace) -> None:
