@@ -88,7 +88,7 @@ def _namesakes() -> Iterator[Finding]:
 def _place() -> Finding:
     """Look at the folder that primkit was started from or installed in."""
     if not CLASSROOM.is_file():
-        return Finding("lessons", "not in this folder; `primkit lessons DIR` writes them out", fine=True)
+        return Finding("lessons", "`primkit lessons DIR` writes them into a folder", fine=True)
     long = sys.platform == "win32" and len(str(PROJECT)) > LONGEST_PATH
     mend = f"move the project to a folder whose path has at most {LONGEST_PATH} letters: Windows ends a path at 260"
     return Finding("folder", f"{PROJECT}" + (", a path too long" if long else ""), mend, not long)

@@ -49,7 +49,14 @@ def teach_options(parser: Parser) -> None:
 
     new = command("new-course", _new_course, "make a course folder for nbgrader", here=False)
     new.add_argument("folder", metavar="DIR", type=path, help="a new folder, or an empty one")
-    new.option("--assignments", "DIR", path, None, "where source/ and grader/ lie", shown="those of the project")
+    new.option(
+        "--assignments",
+        "DIR",
+        path,
+        None,
+        "where source/ and grader/ lie, or an archive of them",
+        shown="those of the project",
+    )
     command("check", _check, "look whether all is there, and say how each fault is mended")
     command("release", _release, "make the students' version, and their personal maps", ps=True)
     collect = command("collect", _collect, "place what was handed in, from the downloads of an LMS", ps=True)
