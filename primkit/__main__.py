@@ -18,7 +18,7 @@ import sys
 from collections.abc import Sequence
 
 from . import __version__
-from .commands import board, studies, teach
+from .commands import board, doctor, lessons, studies, teach
 from .commands.words import LOOK, Parser, exit_code, nearest
 
 COMMANDS = {
@@ -26,6 +26,8 @@ COMMANDS = {
     "study": (studies.study, studies.STUDY_TEXT, studies.STUDY_EXAMPLES, studies.study_options),
     "accuracy": (studies.accuracy, studies.ACCURACY_TEXT, studies.ACCURACY_EXAMPLES, studies.accuracy_options),
     "make-map": (board.make_map, board.MAKE_TEXT, board.MAKE_EXAMPLES, board.make_map_options),
+    "lessons": (lessons.write_lessons, lessons.LESSONS_TEXT, lessons.LESSONS_EXAMPLES, lessons.lessons_options),
+    "doctor": (doctor.doctor, doctor.DOCTOR_TEXT, doctor.DOCTOR_EXAMPLES, doctor.doctor_options),
     "teach": (teach.teach, teach.TEACH_TEXT, teach.TEACH_EXAMPLES, teach.teach_options),
 }
 TEXT = "Map circles, triangles, rectangles and pentagons with a simulated robot and its LiDAR."

@@ -21,9 +21,9 @@ PACKAGE = ROOT / "primkit"
 # Beside the plan: ``palette`` holds the colours that the plots, the sliders and the scene's page have in common,
 # without matplotlib; ``own_code`` is how a student's function is run and stopped; ``show`` is how nouns print and show
 # themselves; ``themed`` is how a page is given a picture, and ``notebook`` has it done for figures; ``found`` the list
-# that find_shapes returns; ``rest`` what a report tells of all in it that is no shape.
+# that find_shapes returns; ``rest`` what a report tells of all in it that is no shape; ``installed`` what is here.
 ORDER = (
-    *("arguments", "own_code", "table", "themed"),
+    *("arguments", "own_code", "table", "themed", "installed"),
     *(
         "shapes",
         "random_shapes",

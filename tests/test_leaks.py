@@ -4,6 +4,8 @@ import base64
 import copy
 import html
 import json
+import re
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -193,14 +195,44 @@ def test_the_lessons_hold_no_solution():
     assert find_leaks(sorted((ROOT / "notebooks").glob("*.ipynb")), SECRETS) == []
 
 
-def test_the_wheel_holds_no_solution(tmp_path):
-    command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)]
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """A folder with what is uploaded: the wheel, and the source archive's own folder."""
+    folder = tmp_path_factory.mktemp("dist")
+    command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-t", "sdist", "-d", str(folder)]
     subprocess.run(command, cwd=ROOT, check=True, capture_output=True, timeout=120)
-    (wheel,) = tmp_path.glob("*.whl")
-    assert find_leaks([wheel], SECRETS) == []
+    (archive,) = folder.glob("*.tar.gz")
+    shutil.unpack_archive(archive, folder / "sdist", filter="data")
+    return folder
+
+
+def test_neither_wheel_nor_source_archive_holds_a_solution(built):
+    (wheel,) = built.glob("*.whl")
     with zipfile.ZipFile(wheel) as archive:
-        assert [name for name in archive.namelist() if "grader" in name or name.endswith(".ipynb")] == []
-        assert "primkit/course/leaks.py" in archive.namelist()
+        held = set(archive.namelist())
+    lessons = {path.name for path in (ROOT / "notebooks").glob("*.ipynb")}
+    assert {Path(name).name for name in held if name.endswith(".ipynb")} == lessons
+    assert {"primkit/course/leaks.py", "primkit/py.typed", "primkit/data/maps/4-10.geojson"} <= held
+    assert [name for name in held if re.search("/(grader|assignments|teacher|pictures|tests)/", name)] == []
+    (source,) = (built / "sdist").iterdir()
+    inside = {path.relative_to(source).as_posix() for path in source.rglob("*") if path.is_file()}
+    assert {re.sub(r"^primkit/(data|lessons)/", "", name) for name in held if "dist-info" not in name} == {
+        re.sub("^(data|notebooks)/", "", name) for name in inside if re.match("(primkit|data|notebooks)/", name)
+    }
+    assert find_leaks([built / "sdist"], SECRETS) == []  # the same files, as this shows
+
+
+def test_the_package_s_page_leads_out_of_no_folder(built):
+    (wheel,) = built.glob("*.whl")
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = [name for name in archive.namelist() if name.endswith("dist-info/METADATA")]
+        told, _, page = archive.read(name).decode().partition("\n\n")
+    assert {"Name: primkit-lab", "License-Expression: BSD-3-Clause AND CC-BY-4.0"} <= set(told.splitlines())
+    links = re.findall(r"\]\(([^)]+)\)|src=\"([^\"]+)\"", page)
+    assert len(links) > 3
+    assert [link for pair in links for link in pair if link and not link.startswith(("https:", "#"))] == []
+    assert "environment.txt" not in page
+    assert "pip install" in page
 
 
 # --- the command --------------------------------------------------------------------------------------------

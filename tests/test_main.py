@@ -86,6 +86,8 @@ HELP = {
         "(default: drawn)",
         "the file; one that is there is replaced (default: map.geojson)",
     ],
+    "lessons": ["usage: primkit lessons [-h] DIR", "A lesson that is there already stays as it is."],
+    "doctor": ["It changes nothing, and asks nobody on the network."],
     "teach": [
         "usage: primkit teach [-h] COMMAND ...",
         "new-course  make a course folder for nbgrader",
@@ -143,6 +145,22 @@ def test_a_board_is_drawn_without_scipy_and_matplotlib(tmp_path):
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
+
+
+# --- lessons ------------------------------------------------------------------------------------------------
+
+
+def test_lessons_are_written_and_nobody_s_work_is_lost(here, capsys):
+    (here / "mine").mkdir()
+    (here / "mine" / "00_start_here.ipynb").write_text("what a student wrote")
+    assert main(["lessons", "mine"]) == 0
+    lessons = sorted(path.name for path in (ROOT / "notebooks").glob("*.ipynb"))
+    out = capsys.readouterr().out
+    assert out.startswith(
+        f"Wrote  {len(lessons) - 1} lessons into mine; 1 there already, which stay\nNext   jupyter lab "
+    )
+    assert sorted(path.name for path in (here / "mine").iterdir()) == lessons
+    assert (here / "mine" / "00_start_here.ipynb").read_text() == "what a student wrote"
 
 
 # --- map ----------------------------------------------------------------------------------------------------

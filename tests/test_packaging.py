@@ -16,6 +16,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["
 
 
 CLASSROOM = ROOT / "environment.txt"
+TOLD = ("primkit", "notebooks", ".ci", ".github", ".site", "data")  # what readers of the project see, beside the top
 TEACHERS = ROOT / "notebooks" / "teacher" / "environment.txt"  # and the tests'
 
 
@@ -70,7 +71,21 @@ def test_the_lowest_versions_are_those_that_are_stated() -> None:
 def test_citation_has_the_project_s_version_and_licence() -> None:
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8").splitlines()
     assert f"version: {PROJECT['version']}" in citation
-    assert f"license: {PROJECT['license']}" in citation
+    assert [f"  - {name}" for name in PROJECT["license"].split(" AND ")] == [c for c in citation if c[:4] == "  - "][:2]
+    (date,) = [line.removeprefix("date-released: ") for line in citation if line.startswith("date-released")]
+    assert f"## {PROJECT['version']} ({date})" in (ROOT / ".github" / "CHANGELOG.md").read_text(encoding="utf-8")
+
+
+def test_one_line_waits_for_an_owner() -> None:
+    """Whoever owns the project writes a name once; no other file needs it, nor an address made from it."""
+    files = [*ROOT.glob("*.*"), *(path for top in TOLD for path in (ROOT / top).rglob("*.*") if path.is_file())]
+    texts = {path.relative_to(ROOT).as_posix(): path.read_text("utf-8", "replace") for path in files if path.is_file()}
+    waiting = [
+        (name, line) for name, text in texts.items() for line in text.splitlines() if re.search(r"\bOWNER\b", line)
+    ]
+    assert waiting == [("pyproject.toml", 'owner = "OWNER"')]
+    own = r"github(?:usercontent)?\.(?:com|io)/[\w.-]+/primkit"
+    assert [name for name, text in texts.items() if re.search(own, text)] == []
 
 
 def test_library_has_the_project_s_version() -> None:
@@ -83,7 +98,7 @@ def test_a_wheel_has_the_table_of_contents_and_the_scene_s_front_end() -> None:
     tool = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]
     wheel = tool["hatch"]["build"]["targets"]["wheel"]
     assert "primkit" in wheel["only-include"]
-    assert "exclude" not in wheel
+    assert [rule for rule in wheel["exclude"] if not rule.startswith(("/notebooks/", "/data/"))] == []
     front_end = [f"primkit/scene/{name}" for name in ("board.js", "hand.js", "scene.js", "replay.js", "scene.css")]
     read = [*front_end, "primkit/__init__.pyi"]
     assert all((ROOT / name).is_file() for name in read)

@@ -491,6 +491,23 @@ def test_what_cannot_be_done_is_said_in_one_sentence(course, words, sentence, ca
     assert len(err.splitlines()) == 1
 
 
+def test_a_course_is_made_from_the_teachers_archive(tmp_path):
+    held = tmp_path / "teachers" / "notebooks" / "assignments"
+    (held / "source" / "ps1").mkdir(parents=True)
+    (held / "source" / "ps1" / "ps1.ipynb").write_text("{}")
+    (held / "grader").mkdir()
+    archive = shutil.make_archive(str(tmp_path / "teachers"), "zip", tmp_path / "teachers")
+    course = new_course(tmp_path / "course", archive)
+    assert course.sets() == ["ps1"]
+    assert (course.root / "grader").is_dir()
+    (held / "grader").rmdir()
+    archive = shutil.make_archive(str(tmp_path / "without"), "zip", tmp_path / "teachers")
+    with pytest.raises(ValueError, match=r"without\.zip must hold source/ and grader/, got neither"):
+        new_course(tmp_path / "other", archive)
+    with pytest.raises(ValueError, match=r"an installed package holds none.* `git archive .*` makes an archive"):
+        new_course(tmp_path / "other", tmp_path / "nowhere")
+
+
 def test_elsewhere_is_no_course(tmp_path, capsys):
     assert main(["teach", "release", "ps1", "--course", str(tmp_path)]) == 2
     assert "is no course folder: make one with `primkit teach new-course DIR`" in capsys.readouterr().err

@@ -14,7 +14,7 @@ from typing import Any
 
 from ..course.untrusted import UNTRUSTED_WORDS
 from ..table import Table, count
-from .words import LOOK, Parser, path, say, whole
+from .words import LOOK, Parser, path, say, tell_faults, whole
 
 TEACH_TEXT = "run a course: release problem sets, grade them, see how the class did"
 TEACH_EXAMPLES = """\
@@ -49,7 +49,14 @@ def teach_options(parser: Parser) -> None:
 
     new = command("new-course", _new_course, "make a course folder for nbgrader", here=False)
     new.add_argument("folder", metavar="DIR", type=path, help="a new folder, or an empty one")
-    new.option("--assignments", "DIR", path, None, "where source/ and grader/ lie", shown="those of the project")
+    new.option(
+        "--assignments",
+        "DIR",
+        path,
+        None,
+        "where source/ and grader/ lie, or an archive of them",
+        shown="those of the project",
+    )
     command("check", _check, "look whether all is there, and say how each fault is mended")
     command("release", _release, "make the students' version, and their personal maps", ps=True)
     collect = command("collect", _collect, "place what was handed in, from the downloads of an LMS", ps=True)
@@ -90,13 +97,7 @@ def _check(arguments: argparse.Namespace) -> None:
     from ..course.checking import check
     from ..course.course import Course
 
-    findings = check(Course(arguments.course or Path()))
-    for finding in findings:
-        say(str(finding))
-    faults = sum(not finding.fine for finding in findings)
-    say(f"{count(faults, 'fault')} found" if faults else "All is there.")
-    if faults:
-        raise SystemExit(1)
+    tell_faults(check(Course(arguments.course or Path())))
 
 
 def _release(arguments: argparse.Namespace) -> None:

@@ -19,6 +19,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn
 
+from ..installed import Finding
+from ..table import count
+
 # What the library's sentences call differently.
 OPTIONS = {'style="free"': "--style free"}
 LOOK: dict[str, Any] = {"formatter_class": argparse.RawDescriptionHelpFormatter, "allow_abbrev": False}
@@ -111,6 +114,16 @@ def say(text: str) -> None:
     """Print; what the console has no sign for, in the name of a file, is spelled out."""
     encoding = sys.stdout.encoding or "utf-8"
     print(text.encode(encoding, "backslashreplace").decode(encoding))
+
+
+def tell_faults(findings: Sequence[Finding]) -> None:
+    """Print what was looked at, and how many faults there are; end with 1 if there is one."""
+    for finding in findings:
+        say(str(finding))
+    faults = sum(not finding.fine for finding in findings)
+    say(f"{count(faults, 'fault')} found" if faults else "All is there.")
+    if faults:
+        raise SystemExit(1)
 
 
 def meanwhile(text: str) -> None:

@@ -14,11 +14,10 @@ import sys
 import sysconfig
 import tempfile
 from collections.abc import Iterator
-from dataclasses import dataclass
-from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+from ..installed import PROJECT, Finding, kernel, pins_in, python, version_of
 from .confining import UNPROTECTED, confined_by
 from .course import CONFIG, COPIED_FOLDERS, SETTINGS, STUDENTS, Course
 from .grading.judging import hidden_tests_of
@@ -27,56 +26,30 @@ from .moved import old_names
 from .notebooks import marked, read_notebook, text_of
 from .students import SAVE_AS, read_students
 
-LEAST_PYTHON = (3, 11)
-ENVIRONMENT = Path(__file__).resolve().parents[2] / "notebooks" / "teacher" / "environment.txt"  # in a clone
+ENVIRONMENT = PROJECT / "notebooks" / "teacher" / "environment.txt"  # in a clone
 REQUIRED_PACKAGES = ("nbgrader", "jupyterlab", "ipykernel", "nbconvert", "psutil")
 MARK = re.compile(r"^([\w.]+)\.mark\(", re.MULTILINE)  # of a task, in a hidden test
-PIN = re.compile(r"^([\w.-]+)(?:\[[\w,]+\])?==([\w.]+)")
-
-
-@dataclass(frozen=True)
-class Finding:
-    """One thing that was looked at: what, how it is, and what to do unless it is fine."""
-
-    what: str
-    found: str
-    mend: str = ""
-    fine: bool = False
-
-    def __str__(self) -> str:
-        told = f"{self.what}: {self.found}"
-        return f"ok     {told}" if self.fine else f"FAULT  {told}\n       -> {self.mend}"
 
 
 def check(course: Course, environment: Path = ENVIRONMENT) -> list[Finding]:
     """Look at everything that a course needs."""
-    installed = *_python(), *_packages(environment), *_commands(), *_kernel()
+    installed = python(), *_packages(environment), *_commands(), kernel()
     moved = (Finding(old.file, f"names {old.name}, which has moved", old.mend) for old in old_names(course))
     looked_at = *_folder(course), *_sources(course), *moved, *_points(course), *_settings(course), *_secrets(course)
     return [*installed, _walls(), *looked_at, *_gradebook(course)]
 
 
-def _python() -> Iterator[Finding]:
-    version = ".".join(map(str, sys.version_info[:3]))
-    least = ".".join(map(str, LEAST_PYTHON))
-    mend = f"install Python {least} or newer, and make the environment again with it"
-    yield Finding("Python", version, mend, sys.version_info >= LEAST_PYTHON)
-
-
 def _packages(environment: Path) -> Iterator[Finding]:
     """Compare what is installed with what environment.txt says, or only look whether it is there."""
     if environment.is_file():
-        pins = _pins(environment)
+        pins = pins_in(environment)
         mend = f"{Path(sys.executable)} -m pip install -r {environment}"
     else:
         pins = dict.fromkeys(REQUIRED_PACKAGES, "")  # by their own names: "primkit" is somebody else's on PyPI
         mend = f"{Path(sys.executable)} -m pip install {' '.join(pins)}"
     wrong = 0
     for name, wanted in pins.items():
-        try:
-            found = metadata.version(name)
-        except metadata.PackageNotFoundError:
-            found = "missing"
+        found = version_of(name) or "missing"
         if found == "missing" or (wanted and found != wanted):
             wrong += 1
             yield Finding(name, f"{found}, needs {wanted}" if wanted else found, mend)
@@ -85,37 +58,12 @@ def _packages(environment: Path) -> Iterator[Finding]:
         yield Finding("packages", found, fine=True)
 
 
-def _pins(environment: Path) -> dict[str, str]:
-    """Return the versions that a file asks for, and those that it names with -r."""
-    pins: dict[str, str] = {}
-    for line in environment.read_text(encoding="utf-8").splitlines():
-        if line.startswith("-r "):
-            pins |= _pins(environment.parent / line[3:].strip())
-        elif match := PIN.match(line):
-            pins[match[1]] = match[2]
-    return pins
-
-
 def _commands() -> Iterator[Finding]:
     """Look for alembic: nbgrader calls it by its name to make a gradebook."""
     scripts = Path(sysconfig.get_path("scripts"))
     found = next((scripts / name for name in ("alembic", "alembic.exe") if (scripts / name).exists()), None)
     mend = f"{Path(sys.executable)} -m pip install --force-reinstall alembic"
     yield Finding("alembic", str(found or f"not in {scripts}"), mend, bool(found))
-
-
-def _kernel() -> Iterator[Finding]:
-    mend = f"{Path(sys.executable)} -m ipykernel install --sys-prefix"
-    try:
-        from jupyter_client.kernelspec import KernelSpecManager
-
-        words = KernelSpecManager().get_kernel_spec("python3").argv
-    except Exception as error:
-        yield Finding("kernel python3", f"not found ({type(error).__name__})", mend)
-        return
-    program = Path(words[0])
-    own = not program.is_absolute() or program.parent == Path(sys.executable).parent
-    yield Finding("kernel python3", words[0] if own else f"{program} is another Python than this one", mend, own)
 
 
 def _walls() -> Finding:

@@ -16,12 +16,14 @@ import shutil
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from .personal import SALT_LETTERS
 from .students import STUDENT_COLUMNS, Student, read_students
 
 # Where the assignments lie in a clone of the project; a wheel holds none.
 ASSIGNMENTS = Path(__file__).resolve().parents[2] / "notebooks" / "assignments"
+ARCHIVE_COMMAND = "git archive --format=zip -o teachers.zip HEAD notebooks/assignments notebooks/teacher"
 COPIED_FOLDERS = ("source", "grader")  # solutions and hidden tests: neither is ever released
 SCANS = "my_scans.npz"  # a problem set that has this file is about a personal map
 GRADEBOOK_SECONDS = 300  # that one waits for the gradebook
@@ -47,6 +49,7 @@ CONFIG = f'''\
 """nbgrader's settings for this course: read whenever nbgrader runs in this folder."""
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 c = get_config()  # noqa: F821 - nbgrader's own
 course = str(Path(__file__).resolve().parent)
@@ -205,13 +208,21 @@ def new_course(root: str | Path, assignments: str | Path = ASSIGNMENTS) -> Cours
     root : str or path
         A folder that does not exist yet, or is empty.
     assignments : str or path
-        Where ``source/`` and ``grader/`` lie; in a clone of the project they are found by themselves.
+        Where ``source/`` and ``grader/`` lie, or the archive that holds them; in a clone of the project they are found
+        by themselves.
     """
     course, assignments = Course(root), Path(assignments)
+    if assignments.is_file():
+        with TemporaryDirectory() as folder:
+            shutil.unpack_archive(assignments, folder)
+            inside = next((path.parent for path in Path(folder).rglob("grader")), None)
+            if inside is None:
+                raise ValueError(f"{assignments} must hold source/ and grader/, got neither")
+            return new_course(root, inside)
     if not all((assignments / name).is_dir() for name in COPIED_FOLDERS):
         raise ValueError(
-            f"there are no assignments in {assignments}: an installed wheel holds none; download the project's folder "
-            "and install it with `pip install -e .`, or say with --assignments where source/ and grader/ lie"
+            f"there are no assignments in {assignments}: an installed package holds none, for they hold the solutions; "
+            f"in the project's folder `{ARCHIVE_COMMAND}` makes an archive: say --assignments teachers.zip"
         )
     if course.root.exists() and (not course.root.is_dir() or any(course.root.iterdir())):
         raise ValueError(f"{course.root} must be a new folder or an empty one: nothing is ever written over a course")
