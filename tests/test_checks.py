@@ -21,6 +21,7 @@ from primkit import own_code
 from primkit.checks import judges
 from primkit.checks.answer import VERDICT_COLORS, VERDICT_SIGNS, Answer, Check, Fault
 from tests.answers.styles import STYLES, styled
+from tests.answers.ways import WAYS
 from tests.slips import right
 
 FOLDER = Path(__file__).resolve().parent / "answers"
@@ -77,6 +78,14 @@ def test_the_reference_is_right(task):
 @pytest.mark.parametrize(("task", "function", "_text"), table("right"))
 def test_another_right_way_is_right(task, function, _text):
     assert told(task, function).right, told(task, function)
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_ten_right_ways_are_known_and_none_is_refused(task):
+    """With the reference and the plain way that the slips are made from."""
+    refused = {name: answer for name, way in WAYS[task].items() if not (answer := TASKS[task](way)).right}
+    assert refused == {}
+    assert len({*WAYS[task].values(), *ANSWERS[task]["right"].values()}) + 2 >= 10
 
 
 @pytest.mark.parametrize(("task", "function", "text"), table("wrong"))

@@ -22,7 +22,14 @@ LESSONS = {path.stem: path for path in sorted((ROOT / "notebooks").glob("*.ipynb
 MODEL = "01_see_with_rays"  # the lesson that the broken examples are made from
 
 CELLS, WORDS = (25, 40), (1200, 2000)
-CELL_WORDS, CELL_LINES, SETUP_LINES = 250, 20, 5
+CELL_WORDS, READ_LINES, SETUP_LINES = 250, 8, 5
+TAKEAWAY_WORDS = 20
+NO_TAKEAWAY = (
+    "Quiz",
+    "Recap",
+    "On your own",
+    "Further reading",
+)  # they are questions, the takeaways, and what is beyond
 FILE_SIZE = 1_000_000  # bytes
 LEAST_TOLD = 20  # letters of the words for who cannot see a picture
 DEEPER = "one-step-deeper"  # the tag of a cell that is folded, so that it does not count to the budget
@@ -118,9 +125,27 @@ def shell(lesson):
     return [f"calls the shell or the notebook: {line}" for line in lines if line.lstrip().startswith(("!", "%"))]
 
 
+def lines_read(cell):
+    """Return how many lines of a cell are read: not blank ones, docstrings, assertions, imports, or what is folded."""
+    if cell["metadata"].get("jupyter", {}).get("source_hidden"):
+        return 0
+    code = re.sub(r'"""(?:.|\n)*?"""', "", source(cell))
+    return sum(bool(line.strip()) and not re.match(r"\s*(assert|import|from)\b", line) for line in code.splitlines())
+
+
 def long_cells(lesson):
-    long = [f"over {CELL_LINES} lines: {source(c)}" for c in code_cells(lesson) if source(c).count("\n") >= CELL_LINES]
+    long = [f"over {READ_LINES} lines in sight: {source(c)}" for c in code_cells(lesson) if lines_read(c) > READ_LINES]
     return long + [f"over {CELL_WORDS} words: {t}" for t in text_cells(lesson) if len(t.split()) > CELL_WORDS]
+
+
+def without_takeaway(lesson):
+    """Under each heading stands one line to take away, a sentence of its own."""
+    breaches = []
+    for heading, below in re.findall(r"^## (.+)\n\n(.*(?:\n.+)*)", text(lesson), re.MULTILINE):
+        line = re.fullmatch(r"> (\S.*[.?!])", below)
+        if heading not in NO_TAKEAWAY and (line is None or len(line[1].split()) > TAKEAWAY_WORDS):
+            breaches.append(f"under {heading} no line to take away: {below}")
+    return breaches
 
 
 def setup(lesson):
@@ -262,7 +287,7 @@ def leftovers(lesson):
 
 
 RULES = (
-    *(not_run_in_order, failed_or_silent, shell, long_cells, setup, headings),
+    *(not_run_in_order, failed_or_silent, shell, long_cells, without_takeaway, setup, headings),
     *(pictures_without_words, unseen_by_the_blind),
     *(missing_parts, slider_without_twin, stubs, poor_quiz, poor_end, unfolded, over_budget, leftovers),
 )
@@ -418,7 +443,9 @@ BROKEN = {
     "a cell that warned": (failed_or_silent, warned),
     "a shell cell": (shell, added("^import primkit", "\n!ls")),
     "a magic": (shell, added("^import primkit", "\n  %time 1")),
-    "a long cell": (long_cells, added("^import primkit", "\n1" * CELL_LINES)),
+    "a long cell": (long_cells, added("^pk.checks.ray_circle", "\n1" * READ_LINES)),
+    "a heading without its line": (without_takeaway, replaced(r"^> .*\n\n", "")),
+    "a long line to take away": (without_takeaway, replaced(r"^> ", "> word" + " word" * TAKEAWAY_WORDS + " ")),
     "a long text": (long_cells, added("^## Recap", " word" * CELL_WORDS)),
     "a long setup": (setup, added("^import primkit", "\n1" * SETUP_LINES)),
     "a setup that prints two lines": (setup, two_lines),

@@ -10,10 +10,12 @@ import re
 
 from tests.test_notebooks import (
     LESSONS,
+    READ_LINES,
     code_cells,
     deeper,
     in_sight,
     is_slider,
+    lines_read,
     load,
     section,
     source,
@@ -23,15 +25,6 @@ from tests.test_notebooks import (
 
 WORDS_A_MINUTE = 150
 MINUTES = {"task": 4.0, "slider": 3.0, "wheel": 2.0, "question": 0.5, "cell": 0.4}
-READ_LINES = 8  # of code in sight in one cell, at most, that the aim of the course asks for
-
-
-def lines_read(cell):
-    """Return how many lines of a cell are read: not blank ones, assertions, imports, or what is folded."""
-    if cell["metadata"].get("jupyter", {}).get("source_hidden"):
-        return 0
-    code = re.sub(r'"""(?:.|\n)*?"""', "", source(cell))
-    return sum(bool(line.strip()) and not re.match(r"\s*(assert|import|from)\b", line) for line in code.splitlines())
 
 
 def asked_of_a_student(lesson):

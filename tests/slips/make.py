@@ -54,6 +54,7 @@ EQUIVALENT = {
     "pipe_center, off by one 1": "99 steps end where 100 end",
     "hexagon_corners, comparison 1": "the place inside lies on no side",
     "overlap_score, order 4": "intersection and union have no order",
+    "parts, order 1": "errors are right on both sides alike, and turning the one list is turning the other back",
 }
 
 
