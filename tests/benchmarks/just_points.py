@@ -59,7 +59,8 @@ def surprises(name, seeds):
     functions = [function for _, _, function, _ in answers]
     visible = ["" if visible_points(name, function) else "v" for function in functions]
     for seed in seeds:
-        for (kind, each, _, loses), shown, hidden in zip(answers, visible, lost_with(seed, name, functions), strict=True):
+        lost = lost_with(seed, name, functions)
+        for (kind, each, _, loses), shown, hidden in zip(answers, visible, lost, strict=True):
             if shown + hidden != loses:
                 found.setdefault((kind, each), Counter())[shown + hidden] += 1
     return found
