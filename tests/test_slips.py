@@ -5,6 +5,7 @@ import linecache
 import os
 import re
 import textwrap
+import time
 from collections import Counter
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 
 import primkit as pk
 from primkit.checks import slips
-from primkit.course.grading.workers import Remote
+from primkit.course.grading.workers import SEARCH_SECONDS, Remote
 from tests.slips import make, named, right
 from tests.test_judge import afar, needs_fork, remote
 
@@ -182,6 +183,17 @@ def test_a_slip_is_told_from_afar_as_in_a_lesson():
         assert "a comparison" in answer.says
         assert "TRIED" not in os.environ
         assert mine.afresh()(np.zeros(2), np.array([1.0, 0.0]), np.array([1.0, 1.0]), np.array([1.0, -1.0])) == np.inf
+
+
+@needs_fork
+def test_all_parts_of_a_task_together_have_one_time_for_slips(monkeypatch):
+    with afar(ray_segment=written(SEGMENT.replace("t >= 0", "t <= 0"))) as workers:
+        mine = remote(workers, "ray_segment")
+        assert "Look at" in CHECKS["ray_segment"][0](mine).says
+        monkeypatch.setattr(time, "process_time", lambda now=time.process_time: now() + SEARCH_SECONDS)
+        answer = CHECKS["ray_segment"][0](mine.afresh())
+        assert answer.verdict == "wrong"
+        assert "Look at" not in answer.says
 
 
 @needs_fork

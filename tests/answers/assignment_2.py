@@ -416,7 +416,9 @@ def medians_by_recursion(points, centers):
 def medians_by_columns(points, centers):
     """x and y apart, in place of a copy."""
     ends, (x, y) = np.array(centers, dtype=float), np.asarray(points).T
-    for _ in range(500):
+    before = None
+    while before is None or (ends != before).any():
+        before = ends.copy()
         away = np.abs(np.subtract.outer(x, ends[:, 0])) + np.abs(np.subtract.outer(y, ends[:, 1]))
         member = away.argmin(axis=1)[:, None] == np.arange(len(ends))
         for k in np.flatnonzero(member.any(axis=0)):

@@ -32,13 +32,15 @@ def bias_by_cells(scans):
     return float(angles[3:-3][np.argmin(smooth)])
 
 
-def bias_by_other_scans(scans):
+def bias_by_other_scans(scans, apart=-1.0):
     """The least distance from hits to hits of other scans, first coarsely, then finely."""
+    turned = np.abs(np.exp(1j * scans.poses[:, 2, None]) - np.exp(1j * scans.poses[:, 2])) > apart
+    np.fill_diagonal(turned, False)
 
     def gap(bias):
         hits, pose = hits_with(scans, bias)
         near, who = cKDTree(hits).query(hits, 8)
-        other = np.where(pose[who] != pose[:, None], near, np.inf).min(axis=1)
+        other = np.where(turned[pose[who], pose[:, None]], near, np.inf).min(axis=1)
         return np.minimum(other, 0.05).mean()
 
     best, step = 0.0, math.radians(1)
@@ -81,11 +83,9 @@ def bias_by_large_cells(scans):
     return float(angles[np.argmin(counts)])
 
 
-def bias_by_fine_cells(scans):
-    """Cells smaller than the noise."""
-    angles = np.radians(np.arange(-12, 12.01, 0.1))
-    counts = [len(np.unique(np.floor(hits_with(scans, angle)[0] / 0.001), axis=0)) for angle in angles]
-    return float(angles[np.argmin(counts)])
+def bias_by_turned_scans(scans):
+    """Compares scans only where the robot has turned in between."""
+    return bias_by_other_scans(scans, apart=0.5)
 
 
 def bias_at_least_one_degree(scans):
@@ -416,8 +416,9 @@ def bias_by_bands(scans):
     return angles[2:-2][costs.argmin()].item()
 
 
-def bias_mean_heading(scans):
-    return float(scans.poses[:, 2].mean())
+def bias_first_heading(scans):
+    """As if the robot had set out at a heading of 0."""
+    return float(scans.poses[0, 2])
 
 
 def bias_twice(scans):
@@ -577,7 +578,7 @@ ANSWERS = {
             "other scans": bias_by_other_scans,
         },
         "wrong": {
-            "mean heading": (bias_mean_heading, "123", None),
+            "first heading": (bias_first_heading, "123", None),
             "twice": (bias_twice, "v123", None),
             "unsigned": (bias_unsigned, "v123", None),
             "other sign": (bias_other_sign, "v123", "sign turned round"),
@@ -586,7 +587,7 @@ ANSWERS = {
             "coarse": (bias_coarse, "v123", "steps too coarse"),
             "only left": (bias_only_left, "v123", None),
             "large cells": (bias_by_large_cells, "v123", None),
-            "fine cells": (bias_by_fine_cells, "2", "steps too coarse"),
+            "turned scans": (bias_by_turned_scans, "v1", None),
             "at least one": (bias_at_least_one_degree, "3", "steps too coarse"),
         },
     },

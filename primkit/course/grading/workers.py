@@ -11,6 +11,7 @@ student's; on the clock it may take ``PATIENCE`` times as long, and longer where
 from __future__ import annotations
 
 import inspect
+import math
 import select
 import socket
 import time
@@ -29,6 +30,7 @@ MOST_BUSY = 10.0  # times as long on a busy one
 GREETING_SECONDS = 8.0  # until a worker is there: a fork takes milliseconds
 STRANGER_SECONDS = 1.0  # for a greeting that was sent before: whoever says nothing is no twin
 EDITED_SECONDS = 0.05  # for one call of what is tried, while a slip is looked for
+SEARCH_SECONDS = 1.5  # of the judge's time, for the slips in one function: all its parts together
 SOURCE_LETTERS = 20_000  # of a function with its helpers
 MOST_WAITING = 128  # connections
 
@@ -167,12 +169,20 @@ class Remote:
         self.__signature__ = _signature(arguments)
         self.source = _source(source)
         self.remarks: set[str] = set()
+        self.searched_until = math.inf  # by this process's time
 
     def to_edit(self) -> Editor:
-        """Return where the function can be built with a place of its source changed: another worker, for its time."""
-        with suppress(Ended):  # then nothing is built there
-            self.workers.start(self.cell)
-        return Editor(self.workers, self.__name__)
+        """Return where the function can be built with a place of its source changed: another worker, for its time.
+
+        A part that fails after others have taken the time for that is told without a slip.
+        """
+        self.searched_until = min(self.searched_until, time.process_time() + SEARCH_SECONDS)
+        if time.process_time() > self.searched_until:
+            self.source = []
+        else:
+            with suppress(Ended):  # then nothing is built there
+                self.workers.start(self.cell)
+        return Editor(self.workers, self.__name__, self.searched_until)
 
     def afresh(self) -> Remote:
         """Let another worker do the next calls."""
@@ -197,12 +207,13 @@ class Remote:
 class Editor:
     """A student's function with another source: it is built and called in the student's process, never in this one."""
 
-    def __init__(self, workers: Workers, name: str) -> None:
-        self.workers, self.__name__ = workers, name
+    def __init__(self, workers: Workers, name: str, until: float) -> None:
+        self.workers, self.__name__, self.until = workers, name, until
 
     def edited(self, source: str) -> Callable[..., Any] | None:
-        """Return the function that this text says."""
-        return self._called if self._asked("edit", self.__name__, source) == [True] else None
+        """Return the function that this text says; none once the time for the search is over."""
+        in_time = time.process_time() < self.until
+        return self._called if in_time and self._asked("edit", self.__name__, source) == [True] else None
 
     def _called(self, *args: Any) -> Any:
         said, *more = self._asked("edited", args, EDITED_SECONDS)

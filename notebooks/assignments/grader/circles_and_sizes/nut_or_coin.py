@@ -56,26 +56,27 @@ def judge_name(got: Any, expected: Any, _args: tuple[Any, ...]) -> str | None:
 
 def off_hexagon(points: Floats) -> float:
     """Return the root mean square distance of points from their best regular hexagon, metres: over all turns of it."""
-    circle = pk.fit_circle(points)
-    best = INF
-    for turn in TURN / 6 * np.arange(PHASES) / PHASES:
-        middle = points.mean(axis=0) if circle is None else circle.center
-        for _ in range(4):  # each point to the side that it faces, then the hexagon to the points
-            away = points - middle
-            side = turn + TURN / 6 * np.round((np.arctan2(*away.T[::-1]) - turn) * 6 / TURN)
-            lines = np.column_stack([np.cos(side), np.sin(side), np.ones(len(side))])
-            along = (lines[:, :2] * points).sum(axis=1)
-            fit = np.linalg.lstsq(lines, along, rcond=None)[0]
-            middle = fit[:2]
-        best = min(best, float(np.sqrt(np.mean((lines @ fit - along) ** 2))))
-    return best
+    turn = TURN / 6 * np.arange(PHASES)[:, None] / PHASES  # (turn, point)
+    middle = np.tile((points.min(axis=0) + points.max(axis=0)) / 2, (PHASES, 1))
+    for _ in range(4):  # each point to the side that it faces, then the hexagon to the points
+        x, y = (points - middle[:, None]).transpose(2, 0, 1)
+        side = turn + TURN / 6 * np.round((np.arctan2(y, x) - turn) * 6 / TURN)
+        lines = np.stack([np.cos(side), np.sin(side), np.ones_like(side)], axis=-1)
+        along = (lines[..., :2] * points).sum(axis=-1)
+        across = lines.swapaxes(1, 2)
+        fit = (np.linalg.pinv(across @ lines, hermitian=True) @ across @ along[..., None])[..., 0]
+        middle = fit[:, :2]
+    off = (lines @ fit[..., None])[..., 0] - along
+    return float(np.sqrt((off**2).mean(axis=1)).min())
 
 
 def clear(points: Floats, spread: float, nut: bool) -> bool:
     """Tell whether the spread names it, and the better one of both fits as well: by a tenth or more."""
-    circle, hexagon = off_circle(points), off_hexagon(points)
-    by_fit = circle > PLAINLY * hexagon if nut else hexagon > PLAINLY * circle
-    return by_fit and (named(points, spread) == "nut") == nut
+    circle = off_circle(points)
+    if nut == (circle <= np.sqrt(EXPLAINED) * spread):
+        return False
+    hexagon = off_hexagon(points)
+    return circle > PLAINLY * hexagon if nut else hexagon > PLAINLY * circle
 
 
 def clear_ones(
