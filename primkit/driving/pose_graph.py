@@ -36,7 +36,7 @@ LASTING = 3.0  # s and g, before anything is known: so many times what is new on
 HALF_AXLE, LEAST_WAY = 0.05, 1e-5  # turns on the spot slip, too
 COLUMNS_AT_ONCE, SIGN_VECTORS, RUN = 1000, 24, 8
 LEAST_VARIANCE = 1e-10
-SUPPOSED = 10.0  # residuals that agree with what was supposed: where few are free, the variance stays
+AS_SUPPOSED = 10.0  # residuals that agree with what was supposed: where few are free, the variance stays
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,7 +191,7 @@ def variances(state: State, hits: Hits, steps: Floats) -> tuple[Floats, float]:
     signs = np.random.default_rng(0).choice([-1.0, 1.0], (rows.shape[1], SIGN_VECTORS))
     solved = _factors(rows, odometry).solve(signs)
     free = [part.shape[0] - float((solved * (part.T @ (part @ signs))).sum()) / SIGN_VECTORS for _, part in groups]
-    left = (SUPPOSED + np.array([part @ part for part, _ in groups])) / (SUPPOSED + np.maximum(free, 0.0))
+    left = (AS_SUPPOSED + np.array([part @ part for part, _ in groups])) / (AS_SUPPOSED + np.maximum(free, 0.0))
     runs = off[: len(off) // RUN * RUN].reshape(-1, RUN).sum(axis=1)
     together = float(runs @ runs) / RUN / max(1.0, len(runs) - (len(off) - free[0]))
     noise = float(np.sqrt(state.variance[0] * left[0]))
