@@ -32,10 +32,11 @@ if TYPE_CHECKING:
 NEWTON_STEPS, STILL = 5, 0.0001  # the last step moves no number farther
 LEAST_HIT_STD = 0.00005  # of a hit from its landmark
 GRAZING_NOISE = 0.3  # noise that a hit has across the beam, in noises along it: a beam that grazes ends anywhere
-DRIFT_STD = 0.05, np.radians(20.0)  # of s and g, before anything is known
+LASTING = 3.0  # s and g, before anything is known: so many times what is new on a way of 1
 HALF_AXLE, LEAST_WAY = 0.05, 1e-5  # turns on the spot slip, too
 COLUMNS_AT_ONCE, SIGN_VECTORS, RUN = 1000, 24, 8
 LEAST_VARIANCE = 1e-10
+AS_SUPPOSED = 10.0  # residuals that agree with what was supposed: where few are free, the variance stays
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +82,7 @@ class State:
     poses: Floats
     drift: Floats
     landmarks: Landmarks
-    variance: Floats  # of a range [m^2]; of the way [m^2/m] and of the heading [rad^2/m] on a metre
+    variance: Floats  # of a range [m^2]; on a metre, of the way ahead and sideways [m^2/m], of the heading [rad^2/m]
 
     @property
     def numbers(self) -> Floats:
@@ -128,7 +129,7 @@ def hit_rows(state: State, hits: Hits) -> tuple[Floats, csr_array]:
 def step_rows(state: State, steps: Floats) -> tuple[Floats, csr_array]:
     """Return by how much each step contradicts the odometry, in standard deviations, (3 (P - 1) + 2,); the Jacobian.
 
-    First forward and to the left for all steps, then all turns, then the two numbers of the drift.
+    First forward for all steps, then to the left, then all turns, then the two numbers of the drift.
     """
     n, way = len(steps), np.hypot(*steps[:, :2].T)
     here = increments(state.poses)
@@ -137,7 +138,7 @@ def step_rows(state: State, steps: Floats) -> tuple[Floats, csr_array]:
     off[:, :2] -= s * steps[:, :2]
     off[:, 2] = (off[:, 2] + np.pi) % (2 * np.pi) - np.pi - g * way
     slipping = way + HALF_AXLE * np.abs(steps[:, 2]) + LEAST_WAY  # the wheels' way: turns on the spot slip, too
-    std = np.sqrt(slipping[:, None] * state.variance[[1, 1, 2]])
+    std = np.sqrt(slipping[:, None] * state.variance[1:])
     c, si, zero, one = np.cos(heading), np.sin(heading), np.zeros(n), np.ones(n)
     rows = np.array(
         [  # x, y, heading; x, y, heading of the next; s, g
@@ -146,14 +147,13 @@ def step_rows(state: State, steps: Floats) -> tuple[Floats, csr_array]:
             [zero, zero, -one, zero, zero, one, zero, -way],
         ]
     )
-    values = np.moveaxis(rows, 2, 0) / std[:, :, None]
-    drift = state.poses[1:].size + np.arange(2)
+    values = np.moveaxis(rows, 1, 2) / std.T[:, :, None]
+    drift, lasting = state.poses[1:].size + np.arange(2), LASTING * np.sqrt(state.variance[[1, 3]])
     at = np.hstack([3 * np.arange(n)[:, None] + np.arange(-3, 3), np.broadcast_to(drift, (n, 2))])
-    order = [values[:, :2].reshape(-1, 8), values[:, 2], np.pad(np.diag(1 / np.array(DRIFT_STD)), ((0, 0), (6, 0)))]
     last = np.tile(np.pad(drift, (6, 0), constant_values=-1), (2, 1))
-    columns = np.concatenate([np.repeat(at, 2, axis=0), at, last])
-    left = (off / std)[:, :2].ravel(), (off / std)[:, 2], state.drift / DRIFT_STD
-    return np.concatenate(left), _rows(np.concatenate(order), columns, len(state.numbers))
+    values = np.concatenate([*values, np.pad(np.diag(1 / lasting), ((0, 0), (6, 0)))])
+    left = np.append((off / std).T, state.drift / lasting)
+    return left, _rows(values, np.concatenate([at, at, at, last]), len(state.numbers))
 
 
 def _rows(values: Floats, columns: Ints, width: int) -> csr_array:
@@ -181,16 +181,17 @@ def variances(state: State, hits: Hits, steps: Floats) -> tuple[Floats, float]:
 
     A group of n residuals whose squares sum up to q has the variance q / (n - trace(C J'J)) of what was supposed, J the
     group's rows, C the covariance of all unknowns. The trace is the mean of z'C J'J z for vectors z of random signs
-    (Hutchinson, 1989). Where a landmark is not quite what it is taken for, neighbouring hits err together, and the sum
-    of eight scatters more than that of independent ones: then that counts.
+    (Hutchinson, 1989). Where nearly nothing is free, as of an odometry that no hit contradicts, what was supposed
+    stays. Where a landmark is not quite what it is taken for, neighbouring hits err together, and the sum of eight
+    scatters more than that of independent ones: then that counts.
     """
     (off, rows), (slipped, odometry) = hit_rows(state, hits), step_rows(state, steps)
-    n = 2 * len(steps)
-    groups = [(off, rows), (slipped[:n], odometry[:n]), (slipped[n:-2], odometry[n:-2])]
+    n = len(steps)
+    groups = [(off, rows), *((slipped[k * n : (k + 1) * n], odometry[k * n : (k + 1) * n]) for k in range(3))]
     signs = np.random.default_rng(0).choice([-1.0, 1.0], (rows.shape[1], SIGN_VECTORS))
     solved = _factors(rows, odometry).solve(signs)
     free = [part.shape[0] - float((solved * (part.T @ (part @ signs))).sum()) / SIGN_VECTORS for _, part in groups]
-    left = np.array([float(part @ part) for part, _ in groups]) / np.maximum(free, 1.0)
+    left = (AS_SUPPOSED + np.array([part @ part for part, _ in groups])) / (AS_SUPPOSED + np.maximum(free, 0.0))
     runs = off[: len(off) // RUN * RUN].reshape(-1, RUN).sum(axis=1)
     together = float(runs @ runs) / RUN / max(1.0, len(runs) - (len(off) - free[0]))
     noise = float(np.sqrt(state.variance[0] * left[0]))
