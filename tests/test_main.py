@@ -159,7 +159,9 @@ def test_lessons_are_written_and_nobody_s_work_is_lost(here, capsys):
     assert out.startswith(
         f"Wrote  {len(lessons) - 1} lessons into mine; 1 there already, which stay\nNext   jupyter lab "
     )
-    assert sorted(path.name for path in (here / "mine").iterdir()) == lessons
+    assert sorted(path.name for path in (here / "mine").iterdir()) == [*lessons, "recordings"]
+    read = [path.name for path in (ROOT / "notebooks" / "recordings").iterdir()]
+    assert {path.name for path in (here / "mine" / "recordings").iterdir()} == set(read) > {"arena.log.gz"}
     assert (here / "mine" / "00_start_here.ipynb").read_text() == "what a student wrote"
 
 

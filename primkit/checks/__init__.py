@@ -24,6 +24,7 @@ from .driving import drive_step, share_seen
 from .edges import fit_line, inliers_of, line_through, ransac_line
 from .groups import assign_points, silhouette, update_centers
 from .naming import fair_choice, meet, sides_and_centroid
+from .poses import clean_ranges, newton_step, wall_residuals
 from .rays import ray_circle, ray_segment
 from .scoring import match_shapes, parts, right
 
@@ -38,6 +39,9 @@ __all__ += [
     "parts",
     "drive_step",
     "share_seen",
+    "clean_ranges",
+    "wall_residuals",
+    "newton_step",
 ]
 __all__ += ["Answer", "Check", "Fault", "TASKS"]
 

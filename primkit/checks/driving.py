@@ -16,7 +16,6 @@ array([0.041, 0.   , 0.   ])
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
 
 import numpy as np
 
@@ -30,32 +29,10 @@ Pose = tuple[float, float, float]
 
 REACH_UNDECIDED = 1e-4  # m: outlines' places whose nearest point is as far as the reach, to this, are left out
 
-_as_array = judges.array()
-
 
 def pose_after(pose: Pose, left: float, right: float, seconds: float) -> Floats:
     """Return the pose after the wheels have turned for a while, shape (3,)."""
     return moved(pose, (left, right), seconds)
-
-
-def _same_pose(got: Any, expected: Any, args: Args) -> str | None:
-    """Judge a pose: metres, and a heading up to whole turns."""
-    try:
-        values = np.asarray(got, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        return _as_array(got, expected, args)
-    if values.shape != (3,) or not np.isfinite(values).all():
-        return _as_array(got, expected, args)
-    turns = np.round((values[2] - expected[2]) / (2 * np.pi))
-    values = values - [0.0, 0.0, 2 * np.pi * turns]
-    worst = int(np.argmax(np.abs(values - expected)))
-    if abs(values[worst] - expected[worst]) <= judges.CLOSE:
-        return None
-    got, wanted = (judges.shown(float(value[worst])) for value in (values, expected))
-    if got == wanted:  # four digits would look like rounding
-        got, wanted = (f"{value[worst]:.9f}" for value in (values, expected))
-    name, unit = (("x", "m"), ("y", "m"), ("heading", "rad"))[worst]
-    return f"{name}: got {got} {unit}, expected {wanted} {unit}"
 
 
 def _drives(rng: np.random.Generator) -> Iterator[Args]:
@@ -111,7 +88,7 @@ drive_step = Check(
     "drive_step",
     pose_after,
     _drives,
-    _same_pose,
+    judges.pose(),
     (
         Fault(
             "Every arc is right. When both wheels turn equally fast, w is 0 and there is no circle: go straight on.",

@@ -163,6 +163,25 @@ def line(tolerance: float = 1e-6) -> Judge:
     return judge
 
 
+def pose(tolerance: float = CLOSE) -> Judge:
+    """Judge a pose: x and y in metres, and a heading up to whole turns."""
+    as_array = array()
+
+    def judge(got: Any, expected: Any, args: tuple[Any, ...]) -> str | None:
+        values = _floats(got)
+        if values is None or values.shape != (3,) or not np.isfinite(values).all():
+            return as_array(got, expected, args)
+        values = values - [0.0, 0.0, 2 * np.pi * np.round((values[2] - expected[2]) / (2 * np.pi))]
+        worst = int(np.argmax(np.abs(values - expected)))
+        if abs(values[worst] - expected[worst]) <= tolerance:
+            return None
+        mine, wanted = told_apart(float(values[worst]), float(expected[worst]))
+        name, unit = (("x", "m"), ("y", "m"), ("heading", "rad"))[worst]
+        return f"{name}: got {mine} {unit}, expected {wanted} {unit}"
+
+    return judge
+
+
 def as_marks(value: Any, n: int) -> NDArray[np.bool_] | None:
     """Return a result as n times True or False; None for what is something else."""
     try:

@@ -1,7 +1,7 @@
 """Lessons: ``primkit lessons DIR`` writes the lessons into a folder, also from an installed package.
 
 In:  a folder.
-Out: one notebook for each lesson in it. What is there already is somebody's work, and stays.
+Out: one notebook for each lesson in it, and the recordings that they read. What is there already is somebody's work, and stays.
 """
 
 from __future__ import annotations
@@ -29,10 +29,13 @@ def write_lessons(arguments: argparse.Namespace) -> None:
     notebooks = [file for place in places for file in sorted(place.glob("[0-9]*.ipynb"))]
     if not notebooks:
         raise ValueError(f"there are no lessons in {' or '.join(map(str, places))}: install the package again")
-    arguments.folder.mkdir(parents=True, exist_ok=True)
+    (arguments.folder / "recordings").mkdir(parents=True, exist_ok=True)
     new = [file for file in notebooks if not (arguments.folder / file.name).exists()]
     for file in new:
         shutil.copyfile(file, arguments.folder / file.name)
+    for file in (notebooks[0].parent / "recordings").iterdir():
+        if not (arguments.folder / "recordings" / file.name).exists():
+            shutil.copyfile(file, arguments.folder / "recordings" / file.name)
     stay = len(notebooks) - len(new)
     say(
         f"Wrote  {count(len(new), 'lesson')} into {arguments.folder}"

@@ -20,6 +20,7 @@ from .cells import cells
 from .edges import edges, show_lines
 from .groups import groups
 from .naming import fit_each_kind, naming
+from .poses import poses, show_maps
 from .predictions import answer, guesses, predict, read_quiz
 from .rays import rays
 from .scoring import scoring
@@ -28,8 +29,8 @@ from .svg import what_it_says
 from .wheels import wheels
 
 # The lessons' sliders, in the order of the lessons: tests move each of them to all corners of its box.
-SLIDERS = (boards, rays, cells, groups, edges, arcs, naming, scoring, wheels)
+SLIDERS = (boards, rays, cells, groups, edges, arcs, naming, scoring, wheels, poses)
 
-__all__ = ["boards", "rays", "cells", "groups", "edges", "arcs", "naming", "scoring", "wheels", "SLIDERS"]
+__all__ = ["boards", "rays", "cells", "groups", "edges", "arcs", "naming", "scoring", "wheels", "poses", "SLIDERS"]
 __all__ += ["show_lines", "show_circles", "fit_each_kind", "explore", "Explorer", "Slider", "Choice", "what_it_says"]
-__all__ += ["predict", "answer", "guesses", "read_quiz"]
+__all__ += ["predict", "answer", "guesses", "read_quiz", "show_maps"]

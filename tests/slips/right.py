@@ -242,3 +242,29 @@ def share_seen(outline, points, reach):
             if np.min(distance) <= reach:
                 seen += 1
     return seen / len(outline)
+
+
+def clean_ranges(ranges, range_min, range_max):
+    clean = np.full(len(ranges), np.inf)
+    for k in range(len(ranges)):
+        if ranges[k] > 0 and range_min <= ranges[k] < range_max:
+            clean[k] = ranges[k]
+    return clean
+
+
+def wall_residuals(pose, hits, normals, offsets):
+    x, y, heading = pose
+    place_x = x + np.cos(heading) * hits[:, 0] - np.sin(heading) * hits[:, 1]
+    place_y = y + np.sin(heading) * hits[:, 0] + np.cos(heading) * hits[:, 1]
+    return normals[:, 0] * place_x + normals[:, 1] * place_y - offsets
+
+
+def newton_step(guess, hits, normals, offsets):
+    x, y, heading = guess
+    arm_x = np.cos(heading) * hits[:, 0] - np.sin(heading) * hits[:, 1]
+    arm_y = np.sin(heading) * hits[:, 0] + np.cos(heading) * hits[:, 1]
+    off = normals[:, 0] * (x + arm_x) + normals[:, 1] * (y + arm_y) - offsets
+    turn = normals[:, 1] * arm_x - normals[:, 0] * arm_y
+    jacobian = np.stack([normals[:, 0], normals[:, 1], turn], axis=1)
+    step = np.linalg.lstsq(jacobian, off, rcond=None)[0]
+    return guess - step
