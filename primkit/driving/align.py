@@ -17,7 +17,7 @@ Out: ``Alignment``: ``.scans``, the same scans from their mended poses, ``.covar
 [30, 1]
 
 1. Scan matching places each scan on the map of those before it: near enough for shapes to be found.
-2. The shapes and walls in the map of all scans are the landmarks: lines n(a).p = d and circles |p - c| = r.
+2. The shapes and walls in the map of all scans are the landmarks: lines ``n(a).p = d`` and circles ``|p - c| = r``.
 3. Each hit belongs to the landmark that it lies on, if it is clear on which.
 4. All poses, all landmarks, and two numbers of the odometry in one sparse least squares: ``pose_graph``.
 5. How far ranges and steps scatter is told by what is left over.

@@ -1,0 +1,129 @@
+"""Build: the site, offline, from the repository, with one command.
+
+    python -m pip install -r .site/environment.txt
+    python .site/build.py                            into build/site; open build/site/index.html
+
+In:  the lessons with their stored outputs, the docstrings, the teacher's pack, README.md and results.md.
+Out: a folder of pages that needs no server and asks nobody: every link in it leads somewhere, or the build fails.
+"""
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import links
+import reference
+from lessons import page_of
+
+from primkit.course.leaks import find_leaks, secrets_of
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
+MOST_BYTES = 1_000_000  # of a lesson's page
+LINK = re.compile(r"(?<!!)\[([^\]]+)\]\((?!https?:)([^)#\s]*)(#[^)]*)?\)")
+# Of the teacher's pack: what needs no solution to be read. The pages of the problem sets stay with their solutions.
+PACK = ("README.md", "class.md", "running.md", "untrusted_code.md", "accessibility.md", "lessons/*.md")
+
+
+def main():
+    """Build the site and look at it."""
+    out = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build" / "site")
+    start = time.perf_counter()
+    with TemporaryDirectory() as folder:
+        stage(Path(folder))
+        print(f"sources after {time.perf_counter() - start:.0f} s", flush=True)
+        shutil.rmtree(out, ignore_errors=True)
+        command = [sys.executable, "-m", "sphinx", "-q", "-b", "html", "-c", str(HERE), folder, str(out)]
+        subprocess.run(command, check=True, cwd=ROOT)
+    shutil.rmtree(out / ".doctrees", ignore_errors=True)
+    faults = [*links.faults(out), *too_large(out), *leaks(out)]
+    print(*faults, sep="\n", end="\n" * bool(faults))
+    pages = len(list(out.rglob("*.html")))
+    print(f"{pages} pages in {out}, {time.perf_counter() - start:.0f} s, {len(faults)} faults")
+    sys.exit(bool(faults))
+
+
+def stage(folder):
+    """Write the sources of all pages into a folder."""
+    shutil.copytree(ROOT / "data" / "pictures", folder / "data" / "pictures")
+    texts = {
+        "results.md": (HERE / "results.md").read_text(encoding="utf-8"),
+        "changelog.md": (ROOT / ".github" / "CHANGELOG.md").read_text(encoding="utf-8"),
+        **dict(front((ROOT / "README.md").read_text(encoding="utf-8"), lessons_into(folder / "lessons"))),
+        **{f"api/{name}.rst": text for name, text in reference.pages().items()},
+        **dict(pack(ROOT / "notebooks" / "teacher")),
+    }
+    for name, text in texts.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text, encoding="utf-8")
+    for page in folder.rglob("*.md"):  # now that all are there
+        page.write_text(kept_links(page), encoding="utf-8")
+
+
+def lessons_into(folder):
+    """Write the lessons' pages, and their list; return their titles by name."""
+    folder.mkdir()
+    titles = {}
+    for path in sorted((ROOT / "notebooks").glob("[0-9]*.ipynb")):
+        lesson = json.loads(path.read_text(encoding="utf-8"))
+        titles[path.stem] = "".join(lesson["cells"][0]["source"]).partition("\n")[0].removeprefix("# ")
+        (folder / path.name).write_text(json.dumps(page_of(lesson)), encoding="utf-8")
+    listed = "\n".join(f"* [{title}]({name}.ipynb)" for name, title in titles.items())
+    (folder / "index.md").write_text(f"# Lessons\n\n{listed}\n\n{tree(titles)}", encoding="utf-8")
+    return titles
+
+
+def front(readme, titles):
+    """Return the front page and the page behind it, from README.md."""
+    intro, _, rest = re.sub(r"<!--.*?-->\n*", "", readme, flags=re.DOTALL).partition("\n## Start\n")
+    doors = "\n".join(f"* [{title}](lessons/{name}.ipynb)" for name, title in titles.items())
+    chapters = "start", "lessons/index", "results", "api/index", "teacher/README", "changelog"
+    words = "**[Start here](start.md)**, or read first: all sliders and quizzes on these pages work as they are."
+    yield "index.md", f"{intro}\n\n{words}\n\n## The lessons\n\n{doors}\n\n{tree(chapters)}"
+    yield "start.md", f"# Start\n{rest}"
+
+
+def tree(pages):
+    """Return the directive that puts pages below this one."""
+    return "```{toctree}\n:hidden:\n\n" + "\n".join(pages) + "\n```\n"
+
+
+def pack(folder):
+    """Yield the teacher's pages, without those of the problem sets."""
+    files = [file for pattern in PACK for file in sorted(folder.glob(pattern))]
+    names = [file.relative_to(folder).with_suffix("").as_posix() for file in files]
+    for file, name in zip(files, names, strict=True):
+        up = "../" * (name.count("/") + 1)
+        text = file.read_text(encoding="utf-8").replace(f"]({up}0", f"]({up}lessons/0")
+        yield f"teacher/{name}.md", text + f"\n{tree(names[1:])}" * (name == "README")
+
+
+def kept_links(page):
+    """Return a page's text with links to what is on the site; of others the words stay."""
+
+    def keep(match):
+        words, target, _ = match.groups()
+        return match[0] if not target or (page.parent / target).is_file() else words
+
+    return LINK.sub(keep, page.read_text(encoding="utf-8"))
+
+
+def leaks(out):
+    """Return what of the solutions stands on the site."""
+    return map(str, find_leaks([out], secrets_of(ROOT / "notebooks" / "assignments")))
+
+
+def too_large(out):
+    """Return the lessons whose page is too large to be read on a telephone."""
+    for page in sorted((out / "lessons").glob("*.html")):
+        if page.stat().st_size > MOST_BYTES:
+            yield f"{page.name}: {page.stat().st_size:,} bytes, at most {MOST_BYTES:,}"
+
+
+if __name__ == "__main__":
+    main()

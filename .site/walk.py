@@ -1,0 +1,92 @@
+"""Walk: every page of the built site in a browser that has no network, as on a telephone and as on a desk.
+
+    python .site/walk.py                             through build/site
+
+In:  a folder of pages, and Chromium or Chrome.
+Out: a sentence for each fault: a request that leaves the folder, an error of a script, a page that is wider than its
+     window, a slider that does not move, a control without a name, a picture without words, a search without results.
+"""
+
+import shutil
+import sys
+import time
+from pathlib import Path
+
+from playwright.sync_api import sync_playwright
+
+HERE = Path(__file__).resolve().parent
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+WINDOWS = {"telephone": 390, "desk": 1440}  # px
+SECONDS = 2  # from opening a lesson to the first slider that has moved
+NAMELESS = """() => [...document.querySelectorAll("main :is(img, button, input, summary, a[href])")].filter((one) => {
+  const words = one.getAttribute("alt") ?? one.getAttribute("aria-label") ?? one.title;
+  const label = one.labels?.[0]?.textContent ?? "";
+  return !(words || label.trim() || one.textContent.trim() || one.querySelector?.("img[alt], svg")
+    || one.closest("[aria-hidden=true]"));
+}).map((one) => one.outerHTML.slice(0, 80))"""
+
+
+def main():
+    """Walk through all pages."""
+    folder = Path(sys.argv[1] if len(sys.argv) > 1 else HERE.parent / "build" / "site").resolve()
+    program = next(filter(None, map(shutil.which, BROWSERS)), None)
+    pages = sorted(path for path in folder.rglob("*.html") if "_static" not in path.parts)
+    if program is None or not pages:
+        sys.exit(f"there must be one of {', '.join(BROWSERS)}, and pages in {folder}")
+    faults, slowest = [], 0.0
+    with sync_playwright() as play:
+        browser = play.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        for window, width in WINDOWS.items():
+            context = browser.new_context(viewport={"width": width, "height": 900}, offline=True)
+            for path in pages:
+                name, page = f"{path.relative_to(folder)} ({window})", context.new_page()
+                for told in look_at(page, path, width):
+                    if isinstance(told, float):
+                        slowest = max(slowest, told)
+                    else:
+                        faults.append(f"{name}: {told}")
+                page.close()
+        faults += [f"search: {told}" for told in search(context.new_page(), folder)]
+        browser.close()
+    print(*faults, sep="\n", end="\n" * bool(faults))
+    print(f"{len(pages)} pages, the slowest slider moved after {slowest:.2f} s, {len(faults)} faults")
+    sys.exit(bool(faults))
+
+
+def look_at(page, path, width):
+    """Yield what is wrong with a page, and after how many seconds its slider moved."""
+    asked, errors = [], []
+    page.on("request", lambda request: asked.append(request.url))
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
+    start = time.perf_counter()
+    page.goto(path.as_uri(), wait_until="domcontentloaded")
+    slider = page.locator(".primkit-states input[type=range]").first
+    if slider.count():
+        picture = ".primkit-states .primkit-picture"
+        before = page.locator(picture).first.inner_html()
+        slider.press("ArrowRight")
+        page.wait_for_function(f"before => document.querySelector('{picture}').innerHTML !== before", arg=before)
+        yield (seconds := time.perf_counter() - start)
+        if seconds > SECONDS:
+            yield f"the slider moved after {seconds:.1f} s, at most {SECONDS} s"
+    elif page.locator(".primkit-states").count():
+        yield "a slider that is none"
+    if (wide := page.evaluate("document.documentElement.scrollWidth")) > width:
+        yield f"{wide} px wide in a window of {width} px"
+    yield from (f"nameless: {one}" for one in page.evaluate(NAMELESS))
+    yield from (f"asks for {url}" for url in asked if not url.startswith(("file:", "data:", "blob:")))
+    yield from (f"script: {error}" for error in errors)
+
+
+def search(page, folder):
+    """Yield a sentence if a word that stands in a lesson is not found."""
+    page.goto(f"{(folder / 'search.html').as_uri()}?q=silhouette")
+    try:
+        page.wait_for_selector("#search-results li a", timeout=10_000)
+    except Exception as error:
+        yield f"finds nothing: {type(error).__name__}"
+
+
+if __name__ == "__main__":
+    main()
