@@ -1,7 +1,8 @@
 """Lessons: ``primkit lessons DIR`` writes the lessons into a folder, also from an installed package.
 
 In:  a folder.
-Out: one notebook for each lesson in it, and the recordings that they read. What is there already is somebody's work, and stays.
+Out: one notebook for each lesson in it, and the recordings that they read. What is there already is somebody's work
+     and stays.
 """
 
 from __future__ import annotations

@@ -30,7 +30,7 @@ MOST_BUSY = 10.0  # times as long on a busy one
 GREETING_SECONDS = 8.0  # until a worker is there: a fork takes milliseconds
 STRANGER_SECONDS = 1.0  # for a greeting that was sent before: whoever says nothing is no twin
 EDITED_SECONDS = 0.05  # for one call of what is tried, while a slip is looked for
-SEARCH_SECONDS = 1.5  # of the judge's time, for the slips in one function: all its parts together
+SLIPS_SECONDS = 1.5  # of the judge's time, for the slips in one function: all its parts together
 SOURCE_LETTERS = 20_000  # of a function with its helpers
 MOST_WAITING = 128  # connections
 
@@ -176,7 +176,7 @@ class Remote:
 
         A part that fails after others have taken the time for that is told without a slip.
         """
-        self.searched_until = min(self.searched_until, time.process_time() + SEARCH_SECONDS)
+        self.searched_until = min(self.searched_until, time.process_time() + SLIPS_SECONDS)
         if time.process_time() > self.searched_until:
             self.source = []
         else:
