@@ -148,7 +148,7 @@ def _room_of(choice: Choice, shape: Shape) -> Outlines | None:
 def _is_other(choice: Choice, found: Detection) -> bool:
     """Tell whether a group is a thing without corners that is no circle, or too small for a kind to show."""
     small = float(np.ptp(choice.points, axis=0).max()) < LEAST_SIDE
-    return small or (found.kind == "polygon" and min(found.seen) > 0 and choice.fit < CERTAIN)
+    return small or (found.kind == "polygon" and min(found.seen) > 0 and choice.fit < 0)
 
 
 def _wall_along(choice: Choice) -> Wall | None:

@@ -150,7 +150,8 @@ class Choice:
         """Whether what it is, is beyond doubt.
 
         It is ahead of all rivals, and of itself with bends; nearly all points lie on it, none deep inside; nearly all
-        of it was seen, each side by points of its own; it is so large that its kind can show.
+        of it was seen, each side by points of its own; it is so large that its kind can show, and no two shapes that
+        touch would look the same.
         """
         best = self.ranked[0] if self.ranked else None
         if best is None or best.shape is None:
@@ -163,6 +164,7 @@ class Choice:
             and min(best.seen) >= MOST_SEEN
             and self._has_own_points
             and large >= LEAST_SIDE
+            and not (isinstance(best.figure, Outlines) and best.figure.of_two)
             and self.margin >= CERTAIN  # the last, for it fits the rivals that were not
         )
 

@@ -20,14 +20,16 @@ to the side from which it lies farthest out.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import Floats
-from ..shapes import KINDS, NEARLY_RIGHT, Kind, Polygon
+from ..shapes import KINDS, NEARLY_RIGHT, Kind, Polygon, turns_of
 
 # What a board can hold, and a sensor can tell: sides of at least 1.5 cm, corners that bend by 15 to 160 degrees.
 LEAST_SIDE, LEAST_PLANK = 0.015, 0.004
@@ -139,6 +141,28 @@ class Outlines:
         """Whether the first outline bends one way only."""
         return bool((np.mod(_after(self.angles[:1]) - self.angles[:1], 2 * np.pi) < np.pi).all())
 
+    def halves(self) -> Iterator[tuple[int, int, tuple[Floats, Floats]]]:
+        """Yield which two corners of the first outline cut it in two, one that bends inwards at least, and the halves.
+
+        Corners of each, shape (M, 2), metres, the two that cut among them.
+        """
+        corners = self.corners()[0]
+        inwards = turns_of(corners) < 0
+        for i, j in combinations(range(len(corners)), 2):
+            halves = corners[i : j + 1], np.concatenate([corners[j:], corners[: i + 1]])
+            if (inwards[i] or inwards[j]) and min(map(len, halves)) > 2:
+                yield i, j, halves
+
+    @property
+    def of_two(self) -> bool:
+        """Whether the first outline may as well be that of two shapes with names that touch along a side of one.
+
+        Cut between two corners that bend inwards, each half is a triangle, a rectangle or a pentagon. A gap between
+        them that is narrower than neighbouring points are apart leaves no trace.
+        """
+        inwards = turns_of(self.corners()[0]) < 0
+        return any(inwards[i] and inwards[j] and all(map(_has_name, halves)) for i, j, halves in self.halves())
+
     @property
     def kind(self) -> Kind:
         """The first outline's kind, as ``Polygon.kind`` tells it."""
@@ -175,6 +199,14 @@ class Outlines:
     def polygon(self, index: int = 0) -> Polygon:
         """Return one of the outlines as a Polygon."""
         return Polygon(self.corners()[index])
+
+
+def _has_name(corners: Floats) -> bool:
+    """Tell whether corners, shape (M, 2), are nearly those of a triangle, a rectangle or a convex pentagon."""
+    turns = turns_of(corners)
+    bent = turns[np.abs(turns) > LEAST_TURN]
+    square = bool((np.abs(bent - np.pi / 2) <= LEAST_TURN).all())
+    return bool((bent > 0).all()) and (len(bent) in (3, 5) or (len(bent) == 4 and square))
 
 
 def _before(sides: Floats) -> Floats:

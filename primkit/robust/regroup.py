@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 from ..arguments import Floats
 from ..lines import fit_line
 from ..segmentation import LEAST_GROUP, LINK, kmeans, link
+from ..shapes import turns_of
 from .candidates import MOST_POINTS
 from .choice import Choice, explained
 from .evidence import CERTAIN, NEARLY_ALL, joint_cost
@@ -134,9 +135,14 @@ def _margin(group: Choice, groups: list[Choice], tried: _Tried) -> float:
     for (a, b), union in tried.unions.items():
         if group in (a, b) and a in groups and b in groups:
             others.append(cost_of([union]) - cost_of([a, b]))
-    split = next((parts for parts in tried.halves.values() if group in parts), ())
-    if any(part in groups and not part.certain for part in split):
-        others.append(0.0)  # where the other half is in doubt, so is the cut
+    whole = group
+    while (before := next((g for g, parts in tried.halves.items() if whole in parts), None)) is not None:
+        whole = before
+    pieces = [whole]
+    for piece in pieces:
+        pieces += () if piece in groups else tried.halves.get(piece, ())
+    if any(piece in groups and piece is not group and not piece.certain for piece in pieces):
+        others.append(0.0)  # where one piece of what was together is in doubt, so are the cuts
     return min(others)
 
 
@@ -218,20 +224,10 @@ def _joints(outline: Outlines) -> list[tuple[float, float]]:
 
     One of them at least is a corner that bends inwards, and cut there, the outline leaves the least of such corners.
     """
-    corners, places = outline.corners()[0], np.cumsum(np.append(0.0, np.subtract(*outline.spans()[::-1])[0]))
-    inwards, left = _turns(corners) < 0, {}
-    for i, j in combinations(range(len(corners)), 2):
-        one, other = corners[i : j + 1], np.concatenate([corners[j:], corners[: i + 1]])
-        if (inwards[i] or inwards[j]) and min(len(one), len(other)) > 2:
-            left[places[i], places[j]] = sum(-np.minimum(_turns(part), 0.0).sum() for part in (one, other))
+    places, left = np.cumsum(np.append(0.0, np.subtract(*outline.spans()[::-1])[0])), {}
+    for i, j, parts in outline.halves():
+        left[places[i], places[j]] = sum(-np.minimum(turns_of(part), 0.0).sum() for part in parts)
     return sorted(left, key=lambda ends: left[ends])[:MOST_JOINTS]
-
-
-def _turns(corners: Floats) -> Floats:
-    """Return by how much an outline turns to the left at each of its corners, shape (K, 2) -> (K,), radians."""
-    x, y = (corners - np.roll(corners, 1, axis=0)).T
-    angles = np.arctan2(y, x)
-    return np.mod(np.roll(angles, -1) - angles + np.pi, 2 * np.pi) - np.pi
 
 
 def _merge_all(
