@@ -13,7 +13,7 @@ import pytest
 
 import primkit as pk
 from primkit.checks import slips
-from primkit.course.grading.workers import SEARCH_SECONDS, Remote
+from primkit.course.grading.workers import SLIPS_SECONDS, Remote
 from tests.slips import make, named, right
 from tests.test_judge import afar, needs_fork, remote
 
@@ -190,7 +190,7 @@ def test_all_parts_of_a_task_together_have_one_time_for_slips(monkeypatch):
     with afar(ray_segment=written(SEGMENT.replace("t >= 0", "t <= 0"))) as workers:
         mine = remote(workers, "ray_segment")
         assert "Look at" in CHECKS["ray_segment"][0](mine).says
-        monkeypatch.setattr(time, "process_time", lambda now=time.process_time: now() + SEARCH_SECONDS)
+        monkeypatch.setattr(time, "process_time", lambda now=time.process_time: now() + SLIPS_SECONDS)
         answer = CHECKS["ray_segment"][0](mine.afresh())
         assert answer.verdict == "wrong"
         assert "Look at" not in answer.says

@@ -14,6 +14,7 @@ import inspect
 import math
 import select
 import socket
+import sys
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -30,7 +31,7 @@ MOST_BUSY = 10.0  # times as long on a busy one
 GREETING_SECONDS = 8.0  # until a worker is there: a fork takes milliseconds
 STRANGER_SECONDS = 1.0  # for a greeting that was sent before: whoever says nothing is no twin
 EDITED_SECONDS = 0.05  # for one call of what is tried, while a slip is looked for
-SEARCH_SECONDS = 1.5  # of the judge's time, for the slips in one function: all its parts together
+SLIPS_SECONDS = 1.5  # of the judge's time, for the slips in one function: all its parts together
 SOURCE_LETTERS = 20_000  # of a function with its helpers
 MOST_WAITING = 128  # connections
 
@@ -121,9 +122,14 @@ class Workers:
         return found
 
     def ask(self, *values: Any) -> list[Any]:
-        """Say something to the worker and return what it answers."""
+        """Say something to the worker and return what it answers.
+
+        A check's own limit, which looks at each line of a function that runs here, must not break off a message.
+        """
         if self.line is None:
             raise Ended("its process has ended")
+        limit = sys.gettrace()
+        sys.settrace(None)
         try:
             say(self.line, *values)
             return hear(self.line, watch=self._watch)
@@ -131,6 +137,8 @@ class Workers:
             self._let_go()
             self.traces += [f"the process {gone}"] * (str(gone) != ENDED)
             raise Ended(str(gone)) from None
+        finally:
+            sys.settrace(limit)
 
     def _let_go(self) -> None:
         if self.line:
@@ -176,7 +184,7 @@ class Remote:
 
         A part that fails after others have taken the time for that is told without a slip.
         """
-        self.searched_until = min(self.searched_until, time.process_time() + SEARCH_SECONDS)
+        self.searched_until = min(self.searched_until, time.process_time() + SLIPS_SECONDS)
         if time.process_time() > self.searched_until:
             self.source = []
         else:
