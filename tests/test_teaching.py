@@ -107,11 +107,12 @@ def graded(tmp_path_factory):
 
 def test_full_marks_none_and_exactly_the_expected_ones(graded):
     course, _, _, expected = graded
-    rows = table(course / "reports" / PS / "grades.csv")  # nbgrader's own export
-    assert {row["student_id"]: float(row["score"]) for row in rows if row["state"] == "graded"} == expected
-    assert {float(row["max_score"]) for row in rows} == {15.0}
-    others = {row["student_id"]: row["state"] for row in rows if row["student_id"] not in expected}
+    rows = table(course / "reports" / PS / "class.csv")
+    assert {row["id"]: float(row["ps1 (of 15.0)"]) for row in rows if row[PS] == "graded"} == expected
+    others = {row["id"]: row[PS] for row in rows if row["id"] not in expected}
     assert others == {"torn": "could not be graded", "lazy": "nothing handed in", "late": "not yet graded"}
+    exported = table(course / "reports" / PS / "grades.csv")  # nbgrader's own export
+    assert {row["student_id"]: float(row["score"]) for row in exported} == expected | dict.fromkeys(others, 0.0)
 
 
 def test_who_is_not_in_the_list_and_what_could_not_be_graded_is_told_apart(graded):
