@@ -87,6 +87,7 @@ def teach_options(parser: Parser) -> None:
     command("report", _report, "say how the class did; write tables, a figure and nbgrader's export", ps=True)
     command("hand-back", _hand_back, "make feedback with your comments, and files for Moodle and Canvas", ps=True)
     command("similar", _similar, "find pairs of submissions that are more alike than the task makes them", ps=True)
+    command("print", _print, "print a handout and a booklet of solutions, as PDF", ps=True)
     leaks = command("leaks", _leaks, "look for solutions in what students get")
     leaks.add_argument(
         "paths", metavar="PATH", nargs="*", type=path, help="notebooks, wheels, folders (default: release)"
@@ -175,6 +176,14 @@ def _similar(arguments: argparse.Namespace) -> None:
     course = _course(arguments)
     for line in report_pairs(course, course.set(arguments.name)):
         say(line)
+
+
+def _print(arguments: argparse.Namespace) -> None:
+    from ..course.printing import print_set
+
+    course = _course(arguments)
+    for written in print_set(course, course.set(arguments.name)):
+        say(f"Wrote  {written}")
 
 
 def _leaks(arguments: argparse.Namespace) -> None:
