@@ -29,6 +29,7 @@ from .running import nbgrader
 from .students import Student
 
 USUAL_FAULTS = 3  # wrong answers that are told for each part
+CLOCK_SECONDS = 0.01  # a system tells no finer processor time
 OVERVIEW_HEADER = (
     *("task", "part", "of", "students", "mean", "share_right", "parts_well", "seconds", "to_mark_by_hand"),
     *(f"{what}_{k}" for k in range(1, USUAL_FAULTS + 1) for what in ("wrong", "count")),
@@ -162,5 +163,6 @@ def _overview_rows(seen: Overview) -> Iterator[Sequence[Any]]:
     for line in seen.lines:
         usual = [entry for pair in _usual_faults(line) for entry in pair]
         apart, took = line.parts_well(seen.scores), median(line.seconds) if line.seconds else None
-        numbers = (line.of, len(line.points), round(line.mean, 4), round(line.right, 4), apart, took, line.open)
+        told = f"<{CLOCK_SECONDS:g}" if took is not None and took < CLOCK_SECONDS else took
+        numbers = (line.of, len(line.points), round(line.mean, 4), round(line.right, 4), apart, told, line.open)
         yield line.task, line.part, *numbers, *usual, *[""] * (2 * USUAL_FAULTS - len(usual))
