@@ -23,9 +23,8 @@ import pytest
 
 import primkit as pk
 from primkit.course.grading import personal_truth
-from primkit.course.grading.own_board import board_of
 from primkit.course.grading.task import Local
-from primkit.course.personal import personal_scans
+from primkit.course.personal import board_of, personal_scans
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.append(str(ROOT / "notebooks" / "assignments"))  # the teacher's package `grader` is not part of primkit

@@ -8,8 +8,7 @@ import pytest
 
 from primkit.checks import Check, Fault, judges
 from primkit.course.grading import MIME, Part, Task, personal_truth
-from primkit.course.grading.own_board import board_of
-from primkit.course.personal import personal_world
+from primkit.course.personal import board_of, personal_world
 
 
 def lengths(_rng):

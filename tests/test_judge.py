@@ -26,6 +26,7 @@ from primkit.course.grading.judging import hidden_tests_of
 from primkit.course.grading.plain_values import pack, unpack
 from primkit.course.grading.task import missing
 from primkit.course.grading.workers import Ended, OutOfTime, Workers
+from primkit.own_code import call_within
 from tests.answers.assignment_9 import ANSWERS
 from tests.halves import assignments
 from tests.submissions import ROOT, about, read
@@ -225,6 +226,22 @@ def test_t17_waiting_for_a_busy_machine_is_no_fault(monkeypatch):
         monkeypatch.setattr("psutil.getloadavg", lambda: (0.0, 0.0, 0.0))
         with pytest.raises(OutOfTime):
             remote(workers, "length").afresh()(np.array([3.0, 4.0]))
+
+
+@needs_fork
+def test_a_limit_for_lines_of_this_process_does_not_break_off_a_message():
+    """psutil runs lines that stand in no file; on a busy machine a search for slips stopped there."""
+
+    def waits(v):
+        time.sleep(0.3)
+        return length(v)
+
+    with afar(0.1, length=waits) as workers:
+        mine = remote(workers, "length")
+        workers.spent = eval("lambda: 0.0")
+        assert call_within(0.02, mine, np.array([3.0, 4.0])) == 5.0
+        assert mine(np.array([6.0, 8.0])) == 10.0
+        assert workers.traces == []
 
 
 @needs_fork

@@ -39,7 +39,7 @@ RADIUS = Task("radius", [Part("the circle's radius", 3, CHECK)])
 LOOKS = """\
 from pathlib import Path
 import primkit as pk
-from primkit.course.grading.own_board import DEMONSTRATION
+from primkit.course import DEMONSTRATION
 
 print(pk.load_scans("my_scans.npz").ranges.shape)"""
 
@@ -197,8 +197,8 @@ def test_a_written_answer_waits_for_its_teacher(course):
     assert '<a href="#why">Written response</a> (not yet marked, of 2.0)' in pages["ada"]
     assert "Score: 0.0 / 2.0" not in pages["ada"]
     assert "ot yet marked" not in pages["bob"]  # who wrote nothing has 0
-    rows = table(made.root / "reports" / "map" / "grades.csv")
-    states = {row["student_id"]: row["state"] for row in rows}
+    rows = table(made.root / "reports" / "map" / "class.csv")
+    states = {row["id"]: row["map"] for row in rows}
     assert states == {"ada": "graded; 1 to be marked by hand", "bob": "graded"}
 
 

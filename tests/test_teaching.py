@@ -25,6 +25,7 @@ from primkit.course.grade import _alone, _grade_one
 from primkit.course.graded import Graded, Journal
 from primkit.course.grading import MIME
 from primkit.course.handed_in import Fault, file_faults, tree_hash
+from primkit.course.printing import BROWSERS, print_set
 from primkit.course.running import nbgrader
 from tests.submissions import ProblemSet, about, answers_of, read
 from tests.test_assignments import points_left
@@ -107,11 +108,12 @@ def graded(tmp_path_factory):
 
 def test_full_marks_none_and_exactly_the_expected_ones(graded):
     course, _, _, expected = graded
-    rows = table(course / "reports" / PS / "grades.csv")  # nbgrader's own export
-    assert {row["student_id"]: float(row["score"]) for row in rows if row["state"] == "graded"} == expected
-    assert {float(row["max_score"]) for row in rows} == {15.0}
-    others = {row["student_id"]: row["state"] for row in rows if row["student_id"] not in expected}
+    rows = table(course / "reports" / PS / "class.csv")
+    assert {row["id"]: float(row["ps1 (of 15.0)"]) for row in rows if row[PS] == "graded"} == expected
+    others = {row["id"]: row[PS] for row in rows if row["id"] not in expected}
     assert others == {"torn": "could not be graded", "lazy": "nothing handed in", "late": "not yet graded"}
+    exported = table(course / "reports" / PS / "grades.csv")  # nbgrader's own export
+    assert {row["student_id"]: float(row["score"]) for row in exported} == expected | dict.fromkeys(others, 0.0)
 
 
 def test_who_is_not_in_the_list_and_what_could_not_be_graded_is_told_apart(graded):
@@ -579,6 +581,24 @@ def test_a_journal_that_is_none_is_refused_by_its_name(course, text):
     (course.reports(PS) / "graded.json").write_text(text)
     with pytest.raises(ValueError, match=r"^graded\.json: "):
         Journal(course, PS)
+
+
+def test_a_handout_and_solutions_are_printed(course, monkeypatch):
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_markdown_cell("# A handout")])
+    for place in ("release", "source"):
+        (course.root / place / "tiny").mkdir(parents=True)
+        nbformat.write(notebook, course.root / place / "tiny" / "tiny.ipynb")
+    if any(map(shutil.which, BROWSERS)):
+        written = [path.read_bytes()[:5] for path in print_set(course, "tiny")]
+        assert written == [b"%PDF-", b"%PDF-"]
+        assert {path.name for path in (course.root / "paper").iterdir()} == {"tiny.pdf", "tiny_solutions.pdf"}
+    (course.root / "release" / "tiny" / "tiny.ipynb").unlink()
+    monkeypatch.setattr(shutil, "which", lambda name: {"msedge": sys.executable}.get(name))
+    with pytest.raises(ValueError, match="tiny was not released: run `primkit teach release tiny` first"):
+        list(print_set(course, "tiny"))
+    monkeypatch.setattr(shutil, "which", lambda _name: None)
+    with pytest.raises(ValueError, match="a PDF is printed by Chromium, Chrome or Edge, and none is here"):
+        list(print_set(course, "tiny"))
 
 
 def test_a_second_grader_waits_and_loses_nothing(course):

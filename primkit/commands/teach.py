@@ -12,7 +12,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ..course.untrusted import UNTRUSTED_WORDS
 from ..table import Table, count
 from .words import LOOK, Parser, path, say, tell_faults, whole
 
@@ -29,6 +28,26 @@ examples:
 
 The course folder is nbgrader's own: all its commands work in it as well, and
 so does its page, formgrader, in Jupyter Lab.
+"""
+
+TEACH_GRADE_TEXT = """\
+what grading runs, and what it can reach:
+  Grading runs the code that students hand in. It runs in a process of its own;
+  tests, truth, points and gradebook never are in that process: they stay with
+  the judge, which calls the student's functions from outside and compares what
+  comes back. So no code can make its own tests pass.
+  Where bubblewrap is installed (Linux), that process stands behind walls: it
+  sees Python, the library and a scratch copy of the submission, read only but
+  for the copy; no other file, no network, no other process; and what it leaves
+  behind ends with it. `primkit teach check` says whether the walls stand.
+  Where they do not, every report says "unprotected": the code then runs as
+  you, and can open and delete your files. For people whom you do not know,
+  grade in a container without a network then, and say so by the variable:
+    docker run --rm --network none --memory 6g -v "$PWD":/course -w /course \\
+      -e PRIMKIT_CONFINED_BY="a container" IMAGE primkit teach grade ps1
+  (IMAGE: one with the project installed; mount a copy of the course.) On Linux
+  the process is refused more memory than its limit; on Windows and macOS it is
+  ended about a second after it has taken more.
 """
 
 
@@ -61,13 +80,14 @@ def teach_options(parser: Parser) -> None:
     command("release", _release, "make the students' version, and their personal maps", ps=True)
     collect = command("collect", _collect, "place what was handed in, from the downloads of an LMS", ps=True)
     collect.add_argument("paths", metavar="FILE", nargs="+", type=path, help="zips, folders, notebooks, e-mails")
-    grade = command("grade", _grade, "grade what was handed in, each submission on its own", UNTRUSTED_WORDS, ps=True)
+    grade = command("grade", _grade, "grade what was handed in, each submission on its own", TEACH_GRADE_TEXT, ps=True)
     grade.add_argument("--again", action="store_true", help="grade also what has not changed since")
     grade.add_argument("--student", metavar="ID", action="append", default=[], help="only this one; may be repeated")
     grade.option("--at-once", "N", partial(whole, least=1, most=64), 0, "how many at once", shown="cores, and memory")
     command("report", _report, "say how the class did; write tables, a figure and nbgrader's export", ps=True)
     command("hand-back", _hand_back, "make feedback with your comments, and files for Moodle and Canvas", ps=True)
     command("similar", _similar, "find pairs of submissions that are more alike than the task makes them", ps=True)
+    command("print", _print, "print a handout and a booklet of solutions, as PDF", ps=True)
     leaks = command("leaks", _leaks, "look for solutions in what students get")
     leaks.add_argument(
         "paths", metavar="PATH", nargs="*", type=path, help="notebooks, wheels, folders (default: release)"
@@ -156,6 +176,14 @@ def _similar(arguments: argparse.Namespace) -> None:
     course = _course(arguments)
     for line in report_pairs(course, course.set(arguments.name)):
         say(line)
+
+
+def _print(arguments: argparse.Namespace) -> None:
+    from ..course.printing import print_set
+
+    course = _course(arguments)
+    for written in print_set(course, course.set(arguments.name)):
+        say(f"Wrote  {written}")
 
 
 def _leaks(arguments: argparse.Namespace) -> None:

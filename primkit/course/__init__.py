@@ -2,7 +2,7 @@
 
 nbgrader makes the students' version, runs what they hand in, keeps the gradebook and writes the feedback; here is what
 it lacks: personal maps, a way to run submissions of which none can cost another one anything, a search for leaks, and
-an overview of the class. Read ``untrusted.py`` first: what grading runs, and what that can reach.
+an overview of the class. What grading runs, and what that can reach, says ``primkit teach grade --help``.
 
 In:  ``notebooks/assignments`` of the project: problem sets with their solutions, and the hidden tests.
 Out: a course folder, and in it what students get, grades, feedback, reports.

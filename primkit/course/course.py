@@ -5,8 +5,8 @@ Out: a ``Course``: ``source/`` and ``grader/`` (with solutions: for the teacher 
      of students, and the salt of the personal maps.
 
 What nbgrader and ``primkit teach`` make in it: ``release/`` (for the students), ``personal/`` (one folder for each of
-them), ``collected/`` and ``submitted/``, ``autograded/``, ``feedback/``, ``handed_back/``, ``gradebook.db`` and
-``reports/``.
+them), ``collected/`` and ``submitted/``, ``autograded/``, ``feedback/``, ``handed_back/``, ``paper/``, ``gradebook.db``
+and ``reports/``.
 """
 
 from __future__ import annotations
@@ -104,6 +104,7 @@ submitted/
 autograded/
 feedback/
 handed_back/
+paper/
 reports/
 .primkit/
 """

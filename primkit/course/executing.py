@@ -37,14 +37,33 @@ from ..world import World
 from .confining import UNCOUNTED, UNPROTECTED, confined_by, processes_are_limited
 from .course import SCANS, Course
 from .grading.judging import Judging, hidden_tests_of
-from .grading.own_board import board_of
 from .grading.task import Missing, missing
 from .grading.workers import Workers
 from .own_kernel import OwnKernel
-from .personal import personal_scans, personal_world
+from .personal import board_of, personal_scans, personal_world
 
 FORKS = hasattr(os, "fork")  # not on Windows: there the kernel itself answers the judge, in the end
 LEAVE = "__import__('primkit.course.grading.serving', fromlist=['serving']).{0}({1!r}, {2}, globals())"
+PUT_BACK = """\
+def _put_back(work, files):
+    import os, shutil
+    for name, content in files.items():
+        place = work
+        for part in name.split(os.sep):
+            os.makedirs(place, exist_ok=True)
+            place = os.path.join(place, part)
+            if os.path.islink(place) or (os.path.lexists(place) and not os.path.isdir(place)):
+                os.unlink(place)  # a link, a pipe, the file as it is now
+        shutil.rmtree(place, ignore_errors=True)
+        with open(place, "xb") as file:
+            file.write(content)
+    try:
+        os.getcwd()
+    except OSError:
+        os.chdir(work)
+_put_back({!r}, {!r})
+del _put_back
+"""
 SERVED_SECONDS = 2.0  # until a kernel that answered the judge is ready for a cell again
 ALWAYS_NOTED = ("MemoryError", "SystemExit")  # also where a test meets them
 ERROR_LETTERS = 200  # letters of an error that are told
@@ -255,26 +274,20 @@ class CarefulExecute(OwnKernel):
         return missing(name, told[-1] if told else None)
 
     def _restore_files(self, index: int, *, told: bool = False) -> None:
-        """Put back what a cell has deleted or changed of the files it was given, and note it unless it is told."""
+        """Let the kernel put back what a cell has deleted or changed of its files, and note it unless it is told.
+
+        It is done where the student's code runs, for a link that this has left behind may lead anywhere.
+        """
         given = (path.relative_to(self.given) for path in sorted(self.given.rglob("*")) if path.is_file())
         lost = [path for path in given if not _same(self.given / path, self.work / path)]
         if not lost:
             return
-        whole = not self.work.is_dir()
-        for path in lost:
-            with suppress(OSError):
-                if os.open in os.supports_dir_fd:
-                    _put_back(self.given / path, self.work / path, self.work)
-                else:  # Windows
-                    (self.work / path).parent.mkdir(parents=True, exist_ok=True)
-                    shutil.copyfile(self.given / path, self.work / path)
-        if whole:
-            with suppress(DeadKernelError, RuntimeError):
-                self.run_silently(f"__import__('os').chdir({str(self.work)!r})")
-        if told:
-            return
-        what = "the whole folder" if whole else ", ".join(sorted(map(str, lost)))
-        self._note(index, "FilesChanged", f"deleted or changed {what}: it was put back")
+        what = ", ".join(map(str, lost)) if self.work.is_dir() else "the whole folder"
+        files = {str(path): (self.given / path).read_bytes() for path in lost}
+        with suppress(DeadKernelError, RuntimeError, TimeoutError):
+            self.run_silently(PUT_BACK.format(str(self.work), files))
+        if not told:
+            self._note(index, "FilesChanged", f"deleted or changed {what}: it was put back")
 
     def output(self, outs: Any, msg: Any, display_id: Any, cell_index: int) -> Any:
         """Keep what a cell says, up to a limit: an endless loop may print all the time."""
@@ -300,46 +313,6 @@ def _same(given: Path, now: Path) -> bool:
         return not now.is_symlink() and filecmp.cmp(given, now, shallow=False)
     except OSError:
         return False
-
-
-def _put_back(given: Path, now: Path, work: Path) -> None:
-    """Write a file where it was; never through a link, for that may lead out of the folder."""
-    *folders, name = now.relative_to(work).parts
-    work.mkdir(exist_ok=True)
-    here = os.open(work, FOLDER)
-    try:
-        for part in folders:
-            here, above = _inner_folder(part, here), here
-            os.close(above)
-        _remove(name, here)
-        with open(os.open(name, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600, dir_fd=here), "wb") as file:
-            file.write(given.read_bytes())
-    finally:
-        os.close(here)
-
-
-FOLDER = os.O_RDONLY | getattr(os, "O_DIRECTORY", 0) | getattr(os, "O_NOFOLLOW", 0)
-
-
-def _inner_folder(name: str, here: int) -> int:
-    """Open a folder in another one; whatever else has its name is removed."""
-    with suppress(FileExistsError):
-        os.mkdir(name, dir_fd=here)
-    try:
-        return os.open(name, FOLDER, dir_fd=here)
-    except OSError:
-        os.unlink(name, dir_fd=here)
-        os.mkdir(name, dir_fd=here)
-        return os.open(name, FOLDER, dir_fd=here)
-
-
-def _remove(name: str, here: int) -> None:
-    try:
-        os.unlink(name, dir_fd=here)
-    except FileNotFoundError:
-        return
-    except OSError:  # a folder
-        shutil.rmtree(name, dir_fd=here)
 
 
 def _failed_with(name: str, cell: Any) -> bool:

@@ -13,11 +13,12 @@ from __future__ import annotations
 
 import json
 import os
+import sqlite3
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from typing import Any
 
 import psutil
@@ -98,17 +99,10 @@ def _alone(course: Course, name: str) -> Iterator[None]:
     """Hold a lock that ends with its process; a ValueError says that another one has it."""
     folder = course.root / ".primkit"
     folder.mkdir(exist_ok=True)
-    with open(folder / f"{name}.lock", "a+b") as file:
+    with closing(sqlite3.connect(folder / f"{name}.lock", timeout=0, isolation_level=None)) as lock:
         try:
-            try:
-                import fcntl
-
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except ImportError:
-                import msvcrt  # Windows
-
-                msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined]  # only there
-        except OSError:
+            lock.execute("begin exclusive")
+        except sqlite3.OperationalError:
             raise ValueError(f"{name} is being graded by another command: wait until that has ended") from None
         yield
 

@@ -20,9 +20,8 @@ from ..table import count
 from .course import FEEDBACK_STEPS, Course
 from .graded import Journal
 from .handed_in import Fault
-from .kinds import comments_of
 from .lms import Back, canvas_files, moodle_files
-from .overview import overview
+from .overview import comments_of, overview
 from .running import nbgrader
 from .versions import versions_of
 

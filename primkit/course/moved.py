@@ -25,7 +25,7 @@ MOVED = {
     "from primkit import grading": "from primkit.course import grading",
     "from primkit import personal": "from primkit.course import personal",
     "primkit.grading.table": "primkit.course.grading.mark",
-    "primkit.grading.truth": "primkit.course.grading.own_board",
+    "primkit.grading.truth": "primkit.course.personal",
     "primkit.grading": "primkit.course.grading",
     "primkit.personal": "primkit.course.personal",
     "primkit.teaching": "primkit.course",

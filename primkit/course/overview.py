@@ -2,7 +2,8 @@
 
 In:  the gradebook, and the marks that the hidden tests left in the autograded notebooks.
 Out: an ``Overview``: for each task and part the mean, the share of right answers, how well it parts the good from the
-     weak, and the usual wrong answers; the kinds of them, those that fail alike; a line for each thing that went wrong.
+     weak, and the usual wrong answers; the kinds of them, those that fail alike, with what a teacher has written about
+     each into ``kinds.csv``, in any spreadsheet; a line for each thing that went wrong.
 """
 
 from __future__ import annotations
@@ -16,12 +17,17 @@ from statistics import StatisticsError, correlation
 from textwrap import shorten
 from typing import Any
 
+from ..formats.files import naming
 from .course import Course
 from .graded import Journal
 from .grading.mark import MIME
 from .handed_in import Fault, strangers
 from .notebooks import marked, read_notebook
+from .students import read_table
 
+KINDS_FILE = "kinds.csv"
+KINDS_HEADER = ("kind", "task", "students", "what", "who", "comment")
+WHO = 5  # students that are named for each kind
 UNNAMED = "wrong in another way"
 VISIBLE_LETTERS = 60  # letters of a visible test's own words
 
@@ -265,3 +271,28 @@ def _is_mark(told: Any) -> bool:
     parts = told.get("parts") if isinstance(told, dict) else None
     names = {"says", "points", "of", "verdict", "fault", "off"}
     return isinstance(parts, list) and all(isinstance(part, dict) and names <= {*part} for part in parts)
+
+
+# --- kinds of answers ----------------------------------------------------------------------------------------
+
+
+def comments_of(course: Course, name: str) -> dict[str, str]:
+    """Return what a teacher has written about the kinds of answers: a kind's code -> comment."""
+    path = course.reports(name) / KINDS_FILE
+    if not path.is_file():
+        return {}
+    with naming(KINDS_FILE):
+        header, rows, _ = read_table(path)
+        if missing := sorted({"kind", "comment"} - {*header}):
+            raise ValueError(f"must have the columns kind and comment, lacks {', '.join(missing)}")
+    return {row["kind"]: row["comment"] for _, row in rows if row.get("kind") and row.get("comment")}
+
+
+def kinds_rows(course: Course, seen: Overview) -> Iterator[tuple[Any, ...]]:
+    """Yield a row for each kind, with its comment; in the end those with a comment that nobody gives any more."""
+    comments = comments_of(course, seen.name)
+    for kind in seen.kinds():
+        who = " ".join(kind.students[:WHO]) + " ..." * (len(kind.students) > WHO)
+        yield kind.code, kind.task, len(kind.students), kind.says, who, comments.pop(kind.code, "")
+    for code, comment in comments.items():
+        yield code, "", 0, "nobody's answer any more", "", comment

@@ -15,6 +15,8 @@ Out: a ``World``; the same for the same two, on every computer.
 100
 
 The seed is HMAC-SHA256 of the id under the salt: from many boards, neither the salt nor another's board can be found.
+While a submission is judged, ``personal_truth`` is its student's board; the process that runs the student's code gets
+neither id nor salt. Elsewhere it is that of the demonstration.
 
 Source: RFC 2104, "HMAC: Keyed-Hashing for Message Authentication".
 """
@@ -24,6 +26,9 @@ from __future__ import annotations
 import hashlib
 import hmac
 import unicodedata
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any
 
 import numpy as np
@@ -33,6 +38,7 @@ from ..lidar import Lidar, Scans, scan
 from ..robot import teleport_poses
 from ..shapes import Circle, Polygon, Shape
 from ..world import QUADRANT_CENTER, QUADRANTS, World
+from . import DEMONSTRATION
 
 SALT_LETTERS = 16  # at least: too many salts to be tried out
 PURPOSE = b"primkit personal world 1:"  # the same salt for something else gives other numbers
@@ -111,3 +117,28 @@ def _on_a_circle(n: int, middle: np.ndarray, rng: np.random.Generator) -> Polygo
     turn = rng.uniform(0, 2 * np.pi)
     bearings = turn + 2 * np.pi * np.arange(n) / n + rng.uniform(-CORNER_SHIFT[n], CORNER_SHIFT[n], n)
     return Polygon(middle + rng.uniform(*CORNER_REACH) * np.column_stack([np.cos(bearings), np.sin(bearings)]))
+
+
+TRUTH: ContextVar[World | None] = ContextVar("TRUTH", default=None)
+
+
+@contextmanager
+def board_of(world: World | None) -> Iterator[None]:
+    """Let this be the board that is marked, from now on.
+
+    >>> with board_of(World()):
+    ...     len(personal_truth().shapes)
+    0
+    """
+    before = TRUTH.set(world)
+    try:
+        yield
+    finally:
+        TRUTH.reset(before)
+
+
+def personal_truth() -> World:
+    """Return the board that the student's scans show."""
+    student_id, salt = DEMONSTRATION
+    world = TRUTH.get()
+    return personal_world(student_id, salt=salt) if world is None else world

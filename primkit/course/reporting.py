@@ -3,15 +3,14 @@
 In:  an ``Overview``.
 Out: lines for the screen; ``overview.csv`` (tasks and parts), ``wrong.csv`` (each wrong answer), ``kinds.csv`` (those
      that fail alike, with a place for a comment), ``faults.csv`` (what a teacher should look at), ``grades.csv``
-     (nbgrader's own export), ``class.csv`` (one row a student, with all sets) and ``overview.png``.
+     (nbgrader's own export), ``class.csv`` (one row a student, all sets and their states) and ``overview.png``.
 """
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import astuple
-from pathlib import Path
 from statistics import median
 from typing import Any
 
@@ -25,11 +24,12 @@ from .course import Course
 from .graded import Journal
 from .handed_in import listed_students
 from .handing_back import state, unmarked_answers
-from .kinds import KINDS_FILE, KINDS_HEADER, kinds_rows
-from .overview import Line, Overview, overview
+from .overview import KINDS_FILE, KINDS_HEADER, Line, Overview, kinds_rows, overview
 from .running import nbgrader
+from .students import Student
 
 USUAL_FAULTS = 3  # wrong answers that are told for each part
+CLOCK_SECONDS = 0.01  # a system tells no finer processor time
 OVERVIEW_HEADER = (
     *("task", "part", "of", "students", "mean", "share_right", "parts_well", "seconds", "to_mark_by_hand"),
     *(f"{what}_{k}" for k in range(1, USUAL_FAULTS + 1) for what in ("wrong", "count")),
@@ -58,61 +58,51 @@ def report(course: Course, name: str) -> Iterator[str]:
     exported = nbgrader(course, "export", f"--to={folder / 'grades.csv'}")
     yield from _tell(seen)
     if exported.code == 0:
-        grades = _add_states(course, folder / "grades.csv")
+        with open(folder / "grades.csv", encoding="utf-8", newline="") as export:
+            grades = list(csv.DictReader(export))
         write_atomically(folder / "class.csv", as_csv(*_by_student(course, grades)))
         yield from _missing_sets(course, {row["assignment"] for row in grades})
     yield ""
     yield f"Wrote  {', '.join([*tables, 'overview.png'])} in {folder}"
     yield (
-        f"Wrote  {folder / 'grades.csv'}: nbgrader's export; its last column tells the zeros apart; and class.csv, "
-        "one row a student"
+        f"Wrote  {folder / 'grades.csv'}: nbgrader's export; and class.csv, one row a student, "
+        "which tells the zeros apart"
         if exported.code == 0
         else f"nbgrader's export failed: {exported.reason}"
     )
 
 
-def _add_states(course: Course, path: Path) -> list[dict[str, str]]:
-    """Add a last column to nbgrader's export: whether a 0 is for an answer, for none, or for a broken file."""
-    with open(path, encoding="utf-8", newline="") as file:
-        head, *rows = list(csv.reader(file))
-    students = listed_students(course)
-    sets = {name for name in course.sets() if (course.root / "release" / name).is_dir()}
-    journals = {name: Journal(course, name).entries for name in sets}
-    handed_in = {name: set(course.submitted(name)) for name in sets}
-    open_cells = {name: unmarked_answers(course, name) for name in sets}
-    where = head.index("assignment"), head.index("student_id")
-    rows.sort(key=lambda row: [row[k] for k in where])  # nbgrader's own order changes from course to course
-    for row in rows:
-        name, student = (row[k] for k in where)
-        if name in sets:
-            row.append(
-                state(
-                    journals[name].get(student),
-                    handed_in=student in handed_in[name],
-                    open_cells=len(open_cells[name].get(student, ())),
-                    listed=not students or student in students,
-                )
-            )
-        else:
-            row.append("not in source/")
-    write_atomically(path, as_csv([*head, "state"], rows))
-    return [dict(zip([*head, "state"], row, strict=True)) for row in rows]
+def _by_student(course: Course, grades: Sequence[dict[str, str]]) -> tuple[list[str], list[list[Any]]]:
+    """Return nbgrader's export with one row a student: points and state of each set, and all points together.
 
-
-def _by_student(course: Course, rows: Sequence[dict[str, str]]) -> tuple[list[str], list[list[Any]]]:
-    """Return nbgrader's export with one row a student: points and state of each set, and all points together."""
-    sets = sorted({row["assignment"] for row in rows})
-    told = {(row["student_id"], row["assignment"]): row for row in rows}
-    of = {row["assignment"]: row["max_score"] for row in rows}
+    The state tells whether a 0 is for an answer, for none, or for a broken file.
+    """
+    told = {(row["student_id"], row["assignment"]): float(row["score"]) for row in grades}
+    of = {row["assignment"]: row["max_score"] for row in sorted(grades, key=lambda row: row["assignment"])}
     people = {student.id: student for student in course.roster()}
-    header = ["id", "first_name", "last_name", *(f"{name} (of {of[name]})" for name in sets), "all", *sets]
+    columns = {name: _states(course, name) for name in of}
     table: list[list[Any]] = []
-    for student in sorted({row["student_id"] for row in rows} | {*people}):
-        mine = [told.get((student, name)) for name in sets]
-        points = [float(row["score"]) if row else 0.0 for row in mine]
-        names = [people[student].first_name, people[student].last_name] if student in people else ["", ""]
-        table.append([student, *names, *points, sum(points), *(row["state"] if row else "no set" for row in mine)])
+    for student in sorted({student for student, _ in told} | {*people}):
+        points = [told.get((student, name), 0.0) for name in of]
+        person = people.get(student, Student(student))
+        states = [columns[name](student) if (student, name) in told else "no set" for name in of]
+        table.append([student, person.first_name, person.last_name, *points, sum(points), *states])
+    header = ["id", "first_name", "last_name", *(f"{name} (of {most})" for name, most in of.items()), "all", *of]
     return header, table
+
+
+def _states(course: Course, name: str) -> Callable[[str], str]:
+    """Return what tells how it stands with a student's submission of a set."""
+    if name not in course.sets():
+        return lambda _student: "not in source/"
+    entries, handed_in = Journal(course, name).entries, course.submitted(name)
+    open_cells, listed = unmarked_answers(course, name), listed_students(course)
+    return lambda student: state(
+        entries.get(student),
+        handed_in=student in handed_in,
+        open_cells=len(open_cells.get(student, ())),
+        listed=not listed or student in listed,
+    )
 
 
 def _missing_sets(course: Course, graded: set[str]) -> Iterator[str]:
@@ -173,5 +163,6 @@ def _overview_rows(seen: Overview) -> Iterator[Sequence[Any]]:
     for line in seen.lines:
         usual = [entry for pair in _usual_faults(line) for entry in pair]
         apart, took = line.parts_well(seen.scores), median(line.seconds) if line.seconds else None
-        numbers = (line.of, len(line.points), round(line.mean, 4), round(line.right, 4), apart, took, line.open)
+        told = f"<{CLOCK_SECONDS:g}" if took is not None and took < CLOCK_SECONDS else took
+        numbers = (line.of, len(line.points), round(line.mean, 4), round(line.right, 4), apart, told, line.open)
         yield line.task, line.part, *numbers, *usual, *[""] * (2 * USUAL_FAULTS - len(usual))

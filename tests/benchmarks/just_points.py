@@ -17,7 +17,7 @@ from contextlib import suppress
 import numpy as np
 
 import primkit as pk
-from primkit.course.grading.own_board import board_of
+from primkit.course.personal import board_of
 from tests.test_assignments import ANSWERS, TASKS, visible_points
 
 FIRST_SEED = 1000  # far from those that anything was tried with

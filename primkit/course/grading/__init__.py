@@ -13,7 +13,6 @@ When a submission is graded, tests and student are two processes, and only plain
 ``serving.py``        the student's side of it
 ``wire.py``           what is said on the line
 ``plain_values.py``   what can be said
-``own_board.py``      the board behind a student's scans
 ====================  ==================================================================
 
 In:  the student's function, or its name and where it is looked up.
@@ -31,8 +30,8 @@ half: 0 of 2 points
 Not here: solutions. Those of the problem sets stay with the teacher.
 """
 
+from ..personal import personal_truth
 from .mark import MIME, Mark, Row
-from .own_board import personal_truth
 from .task import Part, Task
 from .workers import OutOfTime
 
