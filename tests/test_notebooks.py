@@ -561,7 +561,7 @@ def test_a_notebook_takes_no_deep_name(path):
 def test_each_stored_picture_has_words(path):
     notebook = json.loads(path.read_text(encoding="utf-8"))
     assert unseen_by_the_blind(notebook) == []
-    assert path.stem == "ps2" or any(map(shows_a_picture, code_cells(notebook)))
+    assert path.stem == "slides" or any(map(shows_a_picture, code_cells(notebook)))  # slides draw theirs into files
 
 
 def test_all_notebooks_are_looked_at():
