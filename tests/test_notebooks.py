@@ -557,6 +557,13 @@ def test_a_notebook_takes_no_deep_name(path):
     assert deep_names(json.loads(path.read_text(encoding="utf-8"))) == []
 
 
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_each_stored_picture_has_words(path):
+    notebook = json.loads(path.read_text(encoding="utf-8"))
+    assert unseen_by_the_blind(notebook) == []
+    assert path.stem == "slides" or any(map(shows_a_picture, code_cells(notebook)))  # slides draw theirs into files
+
+
 def test_all_notebooks_are_looked_at():
     assert {*LESSONS, "ps1", "ps2", "ps3", "ps4", "09_your_own_map", "slides"} == {path.stem for path in NOTEBOOKS}
 

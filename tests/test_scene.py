@@ -30,6 +30,35 @@ SLOWER = 2.0  # times: a larger map makes a step 1.3 times as long; 13 us of wor
 TURN = 2 * WHEEL * 0.3 * FASTEST / AXLE  # rad/s
 
 
+class Later(Executor):
+    """An executor whose work is done when the test says so, or when somebody waits for it."""
+
+    def __init__(self):
+        self.work = []
+
+    def submit(self, fn, /, *args, **kwargs):
+        work = Work(lambda: fn(*args, **kwargs))
+        self.work.append(work)
+        return work
+
+    def work_one(self):
+        self.work.pop(0).do()
+
+
+class Work(Future):
+    def __init__(self, fn):
+        super().__init__()
+        self.fn = fn
+
+    def do(self):
+        if not self.done():
+            self.set_result(self.fn())
+
+    def result(self, timeout=None):
+        self.do()
+        return super().result(timeout)
+
+
 def wander(state, n_steps):
     """Drive for so many steps."""
     hand, stopped = wandering(n_steps), None
@@ -98,7 +127,7 @@ def test_a_drive_is_that_of_the_library(world):
 
 
 def test_each_cell_is_new_once(world):
-    state = DriveState(world)
+    state = DriveState(world, executor=Later())
     first, told = len(state.grid), []
     hand, stopped = wandering(50), None
     for _ in range(50):
@@ -110,14 +139,15 @@ def test_each_cell_is_new_once(world):
 
 
 def test_the_robot_finds_the_shapes_and_sees_the_board(world):
-    state, start = DriveState(world), DriveState(world)
+    state, start = DriveState(world, executor=Later()), DriveState(world)
     wander(state, 420)
+    state.finish()
     assert state.score >= 0.5 > start.score
     assert state.unseen().sum() < start.unseen().sum() / 2
 
 
 def test_back_at_the_start_all_is_as_it_was(world):
-    noisy = pk.Lidar(noise_std=0.002)
+    noisy = pk.Lidar(noise_std=0.0005)
     state, fresh = DriveState(world, noisy, rng=3), DriveState(world, noisy, rng=3)
     wander(state, 5)
     state.undo()
@@ -134,7 +164,7 @@ def test_back_at_the_start_all_is_as_it_was(world):
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no resource module")
 def test_neither_memory_nor_a_step_s_work_grows_with_the_drive():
     """Five times as long, a third as many cells again, while shapes are looked for beside the drive."""
-    (few, before, held, quick), (many, after, still_held, late) = long_drive(0.002, 150, 750)
+    (few, before, held, quick), (many, after, still_held, late) = long_drive(0.001, 100, 400)
     assert many > 1.3 * few
     assert after <= MOST_MEMORY * before
     assert still_held - held < 900  # what is kept of each scan, however small, would be a block each
@@ -161,35 +191,6 @@ def test_the_automatic_movements_are_the_library_s(world):
 
 
 # Shapes are looked for beside the drive.
-
-
-class Later(Executor):
-    """An executor whose work is done when the test says so, or when somebody waits for it."""
-
-    def __init__(self):
-        self.work = []
-
-    def submit(self, fn, /, *args, **kwargs):
-        work = Work(lambda: fn(*args, **kwargs))
-        self.work.append(work)
-        return work
-
-    def work_one(self):
-        self.work.pop(0).do()
-
-
-class Work(Future):
-    def __init__(self, fn):
-        super().__init__()
-        self.fn = fn
-
-    def do(self):
-        if not self.done():
-            self.set_result(self.fn())
-
-    def result(self, timeout=None):
-        self.do()
-        return super().result(timeout)
 
 
 def ahead(state, n_steps):
@@ -270,10 +271,10 @@ def test_thinned_out_cells_know_the_scans_that_hit_them_last(world):
 def test_in_the_end_it_does_not_matter_how_long_looks_took(world):
     """The last look is afresh: the very shapes that find_shapes makes of the map."""
     slow, quick = DriveState(world, executor=(later := Later())), DriveState(world)
-    for number, held in enumerate(["forward"] * 20 + ["left"] * 10):
+    for number, held in enumerate(["forward"] * 11 + ["left"] * 5):
         for state in (slow, quick):
             state.step(wheels_for([held]))
-        if number % 7 == 0:
+        if number % 5 == 0:
             later.work_one()
     alone = pk.find_shapes(quick.grid.points(), rng=0)
     for state in (slow, quick):
@@ -388,7 +389,7 @@ def the_moved(before, after):
     return pair
 
 
-@pytest.mark.parametrize("seed", [1, 2, 5, 7])
+@pytest.mark.parametrize("seed", [1, 5])
 def test_a_moved_shape_leaves_no_ghost_and_is_found_again(seed):
     """Within twenty scans that look at it."""
     state = DriveState(pk.random_world(3, rng=seed), moving=True, rng=seed)
@@ -443,13 +444,15 @@ def test_what_the_robot_cannot_see_any_more_leaves_its_map():
 
 
 def test_the_page_hears_which_cells_are_gone(world):
-    scene = Scene(DriveState(world, moving=True))
+    scene = Scene(DriveState(world, moving=True, executor=(later := Later())))
     told, cells = [], set(map(tuple, scene.state.grid.cells.tolist()))
     scene.send = lambda content, _=None: told.append(content)
     for number, held in enumerate(wandering(60)):
         if number == 30:
             scene.answer({"do": "move"})
         scene.answer({"do": "step", "held": held})
+        if number % 10 == 9 and later.work:
+            later.work_one()
     for message in told:
         cells -= {tuple(cell) for cell in message.get("gone", [])}
         cells |= {tuple(cell) for cell in message.get("cells", [])}
@@ -862,7 +865,7 @@ def test_a_score_of_one_s_own_stands_beside_the_library_s(world):
         "generous": lambda found, world: min(1.0, len(found) / len(world.shapes)),
     }
     for name, judge in judges.items():
-        scene = own_scene(world, score=judge)
+        scene = own_scene(world, executor=Later(), score=judge)
         drive_round(scene, 40)
         scene.state.finish()
         state = scene.state
@@ -875,14 +878,14 @@ def test_a_score_of_one_s_own_stands_beside_the_library_s(world):
 def test_a_segmentation_of_one_s_own_is_not_mended(world):
     """Grouped left and right of the middle, four shapes are never found; a second opinion would find them."""
     halves = pk.Steps(segment=lambda points, _: (points[:, 0] > 0).astype(int))
-    mended = pk.Mapper(steps=halves, rng=0)
-    mended.add(pk.scan(world, pk.teleport_poses(world)))
+    mended, scans = pk.Mapper(steps=halves, rng=0), pk.scan(world, pk.teleport_poses(world))[::2]
+    mended.add(scans)
     scene = own_scene(world, segment=halves.segment)
-    scene.state._mapper.add(pk.scan(world, pk.teleport_poses(world)))
+    scene.state._mapper.add(scans)
     scene.state.finish()
     assert len(scene.state.found) + len(scene.state.found.others) <= 2 < len(mended.found)
     assert scene.state.score < pk.evaluate(mended.found, world).weighted_accuracy - 0.3
-    film = pk.replay(pk.Drive(pk.scan(world, pk.teleport_poses(world)), np.zeros((72, 2))), world, steps=halves)
+    film = pk.replay(pk.Drive(scans, np.zeros((36, 2))), world, steps=halves)
     assert pk.evaluate(film.film.looks[-1].found, world).weighted_accuracy == scene.state.score
     film.close()
 
@@ -954,7 +957,7 @@ def test_without_threads_looks_leave_most_of_the_time_to_the_robot(world, monkey
         monkeypatch.setattr("primkit.scene.scene.LOOKING_SHARE", share)
         scene = own_scene(world, executor=Beside(), segment=slow_halves)
         before = scene.state.n_scans_found
-        drive_round(scene, 20)
+        drive_round(scene, 12)
         looks.append(len({message["score"] for message in scene.sent if "shapes" in message}))
         scene.answer({"do": "step", "held": []})
         assert scene.state.n_scans_found > before

@@ -155,6 +155,18 @@ RUN = f"""() => {{
     return inTime(window.jupyterapp.commands.execute("notebook:run-all-cells"), {RUN_TIME});
 }}"""
 
+# Runs the code cells that begin like this, and no others: what is not run shows what is stored.
+RUN_SOME = f"""({{ open }}, beginning) => {{
+    {IN_TIME}
+    const cells = open.content, wanted = new RegExp(beginning);
+    cells.deselectAll();
+    cells.activeCellIndex = cells.widgets.findIndex((cell) => cell.model.type === "code");
+    cells.widgets
+        .filter((cell) => cell.model.type === "code" && wanted.test(cell.model.sharedModel.getSource()))
+        .forEach((cell) => cells.select(cell));
+    return inTime(window.jupyterapp.commands.execute("notebook:run-cell"), {RUN_TIME});
+}}"""
+
 # Cells and widgets have threads of their own in the kernel: a cell's end tells nothing of a slider's. When one move is
 # done, the next may be sent, so nothing may be open for two frames.
 SETTLE = f"""({{ asked }}) => {{
@@ -174,12 +186,12 @@ CLOSE = """async ({ open }) => {
 
 
 class Lesson:
-    """A lesson that is open in Lab, with all its cells run."""
+    """A lesson that is open in Lab, with all its cells run, or the first code cell and those that begin in some way."""
 
-    def __init__(self, page, name: str, slider_cells: int) -> None:
+    def __init__(self, page, name: str, slider_cells: int, beginning: str = "") -> None:
         self.page, self.name, self.slider_cells = page, name, slider_cells
         self._handle = page.evaluate_handle(OPEN, f"{name}.ipynb")
-        page.evaluate(RUN)
+        self._handle.evaluate(RUN_SOME, beginning) if beginning else page.evaluate(RUN)
         self.settle()
         self.said(anew=True)  # while it opens, the kernel speaks of widgets that are not yet there
         self.panels: list[Panel] = panels(page, slider_cells, self.settle)
@@ -228,9 +240,9 @@ def blank_notebook(sources) -> str:
 
 
 @contextmanager
-def opened(page, name: str, slider_cells: int):
-    """Open a lesson, run it, and close it in the end."""
-    lesson = Lesson(page, name, slider_cells)
+def opened(page, name: str, slider_cells: int, beginning: str = ""):
+    """Open a lesson, run it, or what begins in some way, and close it in the end."""
+    lesson = Lesson(page, name, slider_cells, beginning)
     try:
         yield lesson
     finally:

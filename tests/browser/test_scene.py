@@ -567,7 +567,7 @@ TROUBLES = {
     "a slow fit_line": "fit_line takes ",
     "a fit_circle that raises": "fit_circle raises TypeError",
 }
-OWN_PRESSES = 7  # measured, of each
+OWN_PRESSES = 5  # measured, of each
 
 
 @pytest.fixture(scope="module")
@@ -590,7 +590,7 @@ def test_one_s_own_step_works_while_one_drives(name, own_scenes, screenshots, re
     watch = seat.root.evaluate_handle(WATCH)
     for press in range(OWN_PRESSES):
         page.keyboard.down("wd"[press % 3 // 2])
-        seat.after(seat.scans + 5)
+        seat.after(seat.scans + 3)
         page.keyboard.up("wd"[press % 3 // 2])
         page.wait_for_timeout(250)  # ms: the robot stands by then
     waits = watch.evaluate("(watch) => watch.waits")
