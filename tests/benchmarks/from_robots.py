@@ -1,14 +1,14 @@
 """From robots: what is found in recordings of robots and in worlds of other simulators, which are not in the project.
 
     python -m tests.benchmarks.from_robots log FILE [N]    every N-th scan of a log by itself, and all scans merged
-    python -m tests.benchmarks.from_robots still FILE TOPIC    60 scans at a time of a robot that stands still
+    python -m tests.benchmarks.from_robots still FILE TOPIC [MM]    60 scans at a time of a robot that stands still
     python -m tests.benchmarks.from_robots worlds FILE ...    worlds, scanned with the RPLIDAR A1 and the LDS-01
 
 ``log``: cells of 1 cm. A pillar is a circle of at least two scans or of the map of all, fitted anew to all hits within
 5 cm of it (soft L1); each certain sighting is compared with it. Times are processor time.
 
-``still``: cells of 1 cm, cleaned by ``steady``. A certain shape is there in a scan if half of its points have a hit
-within 3 cm, and missing if fewer have one though the beams reach its place.
+``still``: cells of 1 cm, or so many millimetres, cleaned by ``steady``. A certain shape is there in a scan if half of
+its points have a hit within 3 cm, and missing if fewer have one though the beams reach its place.
 
 ``worlds``: scanned from a grid of 7 x 7 poses over what stands there and a fifth more, without those at which a
 robot would touch something. Cells as ``primkit map --scans`` takes them. A shape is right if it is of the
@@ -58,21 +58,19 @@ def log(path, every=1):
         sightings += [(k, one) for one in found if one.kind == "circle" and one.certain]
         odd += [(k, one) for one in found if one.kind != "circle" and one.certain]
     merged, merged_time = found_in(scans)
-    start = time.process_time()
     cleaned, cleaned_time = found_in(pk.steady(scans, CELL))
-    cleaned_time = time.process_time() - start
     print(f"{len(times)} scans: median {np.median(times):.0f} ms, 90 % below {np.quantile(times, 0.9):.0f} ms")
     print(f"certain in single scans: {len(sightings)} circles, {len(odd)} others {[(k, one.kind) for k, one in odd]}")
     for words, found, seconds in (("as it is", merged, merged_time), ("steady", cleaned, cleaned_time)):
-        certain = [f"{one.kind} at ({one.center[0]:.2f}, {one.center[1]:.2f})" for one in found if one.certain]
+        certain = [f"{one.kind} at {np.round(one.shape.centroid, 2).tolist()}" for one in found if one.certain]
         told = f"{len(found.walls)} walls, {len(found.others)} others; certain: {', '.join(certain) or 'nothing'}"
         print(f"all scans, {words}: {seconds:.1f} s; {len(found)} shapes, {told}")
-    hits = scans.points()
-    for x, y, radius in pillars(hits, [one for _, one in sightings] + [o for o in cleaned if o.kind == "circle"]):
-        offs = [one for _, one in sightings if np.hypot(*(one.center - (x, y))) < radius]
-        median = np.median([one.dimensions[0] for one in offs] or [np.nan])
-        stds = [(one.dimensions[0] - radius) / one.dimension_std[0] for one in offs]
-        of_all = [o.dimensions[0] for o in cleaned if o.kind == "circle" and np.hypot(*(o.center - (x, y))) < radius]
+    circles = [one for one in cleaned if one.kind == "circle"]
+    for x, y, radius in pillars(scans.points(), [*(one for _, one in sightings), *circles]):
+        offs = [one for _, one in sightings if np.hypot(*(one.shape.center - (x, y))) < radius]
+        median = np.median([one.shape.radius for one in offs] or [np.nan])
+        stds = [(one.shape.radius - radius) / one.dimension_std[0] for one in offs]
+        of_all = [one.shape.radius for one in circles if np.hypot(*(one.shape.center - (x, y))) < radius]
         print(
             f"pillar ({x:.3f}, {y:.3f}) r {radius:.4f}: {len(offs)} certain sightings, off by"
             f" {np.round(stds, 1).tolist()} stds, median r {median:.4f};"
@@ -84,12 +82,12 @@ def pillars(hits, circles):
     """Return x, y and radius of each pillar among circles, fitted to all hits around it, shape (K, 3)."""
     fitted = []
     for one in circles:
-        around = hits[np.abs(np.hypot(*(hits - one.center).T) - one.dimensions[0]) < NEAR_RING]
+        around = hits[np.abs(np.hypot(*(hits - one.shape.center).T) - one.shape.radius) < NEAR_RING]
 
         def off(p, places=around):
             return np.hypot(*(places - p[:2]).T) - p[2]
 
-        best = least_squares(off, [*one.center, one.dimensions[0]], loss="soft_l1", f_scale=SOFT).x
+        best = least_squares(off, [*one.shape.center, one.shape.radius], loss="soft_l1", f_scale=SOFT).x
         if all(np.hypot(*(best - other)[:2]) > NEAR_RING for other in fitted):
             fitted.append(best)
     return np.array(fitted).reshape(-1, 3)
@@ -98,12 +96,12 @@ def pillars(hits, circles):
 # --- standing still -----------------------------------------------------------------------------------------
 
 
-def still(path, topic):
+def still(path, topic, side="10"):
     """Print which certain shapes of 60 scans at a time are missing from half of the scans that see their place."""
-    scans = pk.load_scans(path, topic=topic)
+    scans, cell = pk.load_scans(path, topic=topic), float(side) / 1000
     for start in range(0, len(scans) - 59, 60):
         part = scans[start : start + 60]
-        found, seconds = found_in(pk.steady(part, CELL))
+        found, seconds = found_in(pk.steady(part, cell), cell)
         told = []
         for one in (one for one in found if one.certain):
             shares = np.array([_there(one.points, scan) for scan in (part[k : k + 1] for k in range(60))])
