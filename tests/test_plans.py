@@ -124,7 +124,7 @@ PASSED = {
         Z_UP + "Transform { scale 1 2 1 children [ Shape { geometry Box { size 1 1 1 } } ] }",
         "1 x Transform that is scaled",
     ),
-    "no size": (Z_UP + "Wall { } Solid { boundingObject Box { } }", "1 x Box, 1 x Wall without a size"),
+    "no size": (Z_UP + "Wall { } Solid { boundingObject Box { } }", "1 x Box without a size, 1 x Wall without a size"),
     "sdf": (
         SDF.format(
             "<world name='w'><include><uri>model://x</uri></include>" + LINK.format(STILL, STILL, MESH) + "</world>"

@@ -44,7 +44,6 @@ class CellMap:
     def __init__(self, box: Floats) -> None:
         span = box[1] - box[0]
         self.side = max(CELL_SIDE, float(np.sqrt(4 * span.prod() / MOST_MAP_CELLS)))
-        self.least_variance = SMOOTH**2
         self.low, self.counts = box[0], np.ceil(span / self.side).astype(int) + 2
         n = 4 * int(self.counts.prod())
         self.sums = np.zeros((n, 6))  # 1, x, y, xx, xy, yy of the points
@@ -64,7 +63,7 @@ class CellMap:
         hit = np.unique(cells)
         n, sx, sy, xx, xy, yy = self.sums[hit].T
         mx, my = sx / n, sy / n
-        a, b, c = xx / n - mx * mx + self.least_variance, xy / n - mx * my, yy / n - my * my + self.least_variance
+        a, b, c = xx / n - mx * mx + SMOOTH**2, xy / n - mx * my, yy / n - my * my + SMOOTH**2
         large = (a + c) / 2 + np.hypot((a - c) / 2, b)
         known, determinant = n >= LEAST_CELL_POINTS, a * c - b * b
         self.mean[hit] = self.low + np.column_stack([mx, my])

@@ -13,7 +13,6 @@ and what it unpacks to is not bounded here: read those of strangers where it may
 
 from __future__ import annotations
 
-from bisect import bisect
 from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
@@ -23,6 +22,7 @@ import numpy as np
 
 from ..arguments import Floats, doubt, limit, short
 from .files import naming, size_of
+from .plans import moved, turned
 from .recordings import RECORDING_LIMIT, Sweep, check_topics, the_one
 
 INSTALL = "python -m pip install rosbags"
@@ -46,14 +46,14 @@ def read_bag(path: Path, topics: tuple[str, ...]) -> list[Sweep]:
         if laser is None:
             return []
         hops = _hops([one for kind in TRANSFORMS for messages in found[kind].values() for one in messages])
-        poses = sorted(found[ODOMETRY].get(odometry or "", []), key=_time)
+        poses = found[ODOMETRY].get(odometry or "", [])
         frames = {
             (_frame(scan.header.frame_id), _frame(poses[0].child_frame_id)) for scan in found[SCAN][laser] if poses
         }
         mountings = {frame: _mounting(frame, body, hops) for frame, body in frames}
         if loose := [frame for frame, mounting in mountings.items() if mounting is None]:
             doubt(f"nothing tells how {short(loose[0])} is mounted: it is taken to lie where the odometry says", 2)
-        times = [_time(pose) for pose in poses]
+        times = np.array([_time(pose) for pose in poses])
         sweeps = [_sweep(scan, times, poses, mountings) for scan in found[SCAN][laser]]
         if lost := sweeps.count(None):
             doubt(f"{lost} of {len(sweeps)} scans have no odometry within {NEAR_IN_TIME:g} s: they are left out", 2)
@@ -110,24 +110,19 @@ def _frame(name: str) -> str:
 
 def _matrix(place: Any, turn: Any) -> Floats:
     """Return a transform from a place [m] and a quaternion, shape (4, 4)."""
-    x, y, z, w = turn.x, turn.y, turn.z, turn.w
-    norm = (x * x + y * y + z * z + w * w) ** 0.5
+    axis = turn.x, turn.y, turn.z
+    norm = float(np.hypot(sine := float(np.linalg.norm(axis)), turn.w))
     if not 0.5 < norm < 2:
         raise ValueError(f"a quaternion must have the norm 1, got {norm:g}")
-    across = np.array([(0, -z, y), (z, 0, -x), (-y, x, 0)]) / norm  # v x, of the quaternion (v, w)
-    matrix = np.eye(4)
-    matrix[:3, :3] += 2 * w / norm * across + 2 * across @ across
-    matrix[:3, 3] = place.x, place.y, place.z
-    return matrix
+    return moved((place.x, place.y, place.z), turned(axis, 2 * float(np.arctan2(sine, turn.w))))
 
 
-def _sweep(message: Any, times: list[float], poses: list[Any], mountings: dict[str, Floats | None]) -> Sweep | None:
+def _sweep(message: Any, times: Floats, poses: list[Any], mountings: dict[str, Floats | None]) -> Sweep | None:
     """Return a message as a sweep; None where no odometry is near in time."""
     laser = np.eye(4)
     if poses:
         time = _time(message)
-        after = bisect(times, time)
-        nearest = min(range(max(0, after - 1), min(after + 1, len(times))), key=lambda k: abs(times[k] - time))
+        nearest = int(np.abs(times - time).argmin())
         if abs(times[nearest] - time) > NEAR_IN_TIME:
             return None
         body, mounting = poses[nearest].pose.pose, mountings[_frame(message.header.frame_id)]

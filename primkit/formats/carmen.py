@@ -43,7 +43,7 @@ def read_carmen(path: Path, topics: tuple[str, ...], lidar: Lidar | None) -> lis
         for number, words in lines:
             if words and words[0].decode("ascii", "replace") == laser:
                 with naming(f"line {number}"):
-                    sweeps.append(_flaser(words, lidar) if laser == "FLASER" else _robotlaser(words))
+                    sweeps.append(_sweep(words, lidar, at=1 if laser == "FLASER" else 8))
         return sweeps
 
 
@@ -57,40 +57,29 @@ def _unzipped(data: bytes) -> bytes:
     return data
 
 
-def _flaser(words: list[bytes], lidar: Lidar | None) -> Sweep:
-    ranges, rest = _counted(words, 1)
-    n = len(ranges)
-    if lidar is None:
-        lidar = Lidar(n, range_max=SICK_MAX, fov=np.pi, angle_min=-np.pi / 2, both_ends=n % 2 == 1 and n > 1)
-    if lidar.beams != n:
-        raise ValueError(f"must have the lidar's {lidar.beams} ranges, got {n}")
-    return Sweep(_pose(rest), lidar.angles, ranges, 0.0, lidar.range_max)
-
-
-def _robotlaser(words: list[bytes]) -> Sweep:
-    start, _, step, range_max = _numbers(words[2:6], 4)
-    ranges, rest = _counted(words, 8)
-    intensities = _count(rest)
-    return Sweep(_pose(rest[1 + intensities :]), start + step * np.arange(len(ranges)), ranges, 0.0, range_max)
-
-
-def _counted(words: list[bytes], place: int) -> tuple[Floats, list[bytes]]:
-    """Return the n numbers behind the word that tells n, and the words behind them."""
-    n = _count(words[place:])
+def _sweep(words: list[bytes], lidar: Lidar | None, at: int) -> Sweep:
+    """Return the sweep in a line whose number n of ranges is the word ``at``."""
+    n = _count(words, at)
     if n == 0:
         raise ValueError("must have at least one range, got none")
-    return _numbers(words[place + 1 : place + 1 + n], n), words[place + 1 + n :]
+    ranges, behind = _numbers(words[at + 1 : at + 1 + n], n), at + 1 + n
+    if at > 1:  # ROBOTLASER1
+        start, _, step, range_max = _numbers(words[2:6], 4)
+        angles, behind = start + step * np.arange(n), behind + 1 + _count(words, behind)
+    else:
+        lidar = lidar or Lidar(n, 0.0, SICK_MAX, fov=np.pi, angle_min=-np.pi / 2, both_ends=n % 2 == 1 and n > 1)
+        if lidar.beams != n:
+            raise ValueError(f"must have the lidar's {lidar.beams} ranges, got {n}")
+        angles, range_max = lidar.angles, lidar.range_max
+    x, y, heading = _numbers(words[behind : behind + 3], 3).tolist()
+    return Sweep((x, y, heading), angles, ranges, 0.0, range_max)
 
 
-def _count(words: list[bytes]) -> int:
-    if not words or not words[0].isdigit() or len(words[0]) > 7:
-        raise ValueError(f"must tell how many numbers follow, got {short(words[0] if words else None)}")
-    return int(words[0])
-
-
-def _pose(words: list[bytes]) -> tuple[float, float, float]:
-    x, y, heading = _numbers(words[:3], 3).tolist()
-    return x, y, heading
+def _count(words: list[bytes], at: int) -> int:
+    word = words[at] if at < len(words) else None
+    if word is None or not word.isdigit() or len(word) > 7:
+        raise ValueError(f"must tell how many numbers follow, got {short(word)}")
+    return int(word)
 
 
 def _numbers(words: list[bytes], n: int) -> Floats:

@@ -87,9 +87,7 @@ def arena(width: float, depth: float, way: Floats, thickness: float, height: flo
         (0.0, depth / 2 + thickness / 2, (width + 2 * thickness, thickness, height)),
     ):
         for sign in (-1, 1):
-            step = np.eye(4)
-            step[:3, 3] = sign * x, sign * y, height / 2
-            yield Solid("box", size, way @ step)
+            yield Solid("box", size, way @ moved((sign * x, sign * y, height / 2), np.eye(3)))
 
 
 def moved(translation: Sequence[float], turn: Floats) -> Floats:

@@ -33,7 +33,7 @@ PRIMITIVE = re.compile(r'"|[-+.]?\d|(TRUE|FALSE|NULL)$')
 Z_UP_SINCE = (2022, "a")
 Y_UP = np.array([(1.0, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0), (0, 0, 0, 1)])  # x, y, z -> x, -z, y
 FRAMES = {"Solid", "Transform", "Pose", "Group"}
-BOXES = {"WoodenBox": (0.6, 0.6, 0.6), "CardboardBox": (0.6, 0.6, 0.6), "SolidBox": None, "Wall": None}
+BOXES = {"WoodenBox": (0.6, 0.6, 0.6), "CardboardBox": (0.6, 0.6, 0.6), "SolidBox": None, "Wall": None, "Box": None}
 NO_THINGS = re.compile("WorldInfo|Viewpoint|.*Background.*|.*Light|Fog|Floor|ContactProperties")
 WRITTEN_HEIGHT = 0.2  # m, of all that is written
 Node = dict[str, Any]  # its type stands under ""; each field is a list
@@ -160,7 +160,7 @@ class _Reader:
         if kind in ("Floor", "RectangleArena"):
             self._read_floor(node, way @ self._way(node))
         elif kind in BOXES:
-            self._read_box(node, way @ self._way(node))
+            self._read_box(node, way if kind == "Box" else way @ self._way(node))
         elif kind in FRAMES:
             if "scale" in node and numbers(node["scale"], 3, "scale") != [1, 1, 1]:
                 self.passed_over[f"{kind} that is scaled"] += 1
@@ -208,11 +208,9 @@ class _Reader:
         self.solids.append(Solid("box", tuple(size), way))
 
     def _read_geometry(self, node: Node, way: Floats) -> bool:
-        """Take in a box, a cylinder or a prism; False if it is none, or tells no size."""
+        """Take in a cylinder or a prism; False if it is none, or tells no size."""
         kind = node[""]
-        if kind == "Box" and "size" in node:
-            self.solids.append(Solid("box", tuple(lengths(node["size"], 3, "size")), way))
-        elif kind == "Cylinder" and {"radius", "height"} <= set(node):
+        if kind == "Cylinder" and {"radius", "height"} <= set(node):
             (radius,), (length,) = (lengths(node[field], 1, field) for field in ("radius", "height"))
             self.solids.append(Solid("cylinder", (radius, radius, length), way @ Y_UP.T if self.y_up else way))
         elif kind == "IndexedFaceSet" and not self.y_up:

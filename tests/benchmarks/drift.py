@@ -165,7 +165,8 @@ def main():
     print(f"rms after / oracle: median {np.median(after / best):.2f}, of sums {after.sum() / best.sum():.2f}")
     close = share_of(float(np.mean(after <= 1.3 * best)), len(rows))
     print(f"drives at most 1.3 times the oracle: {close.text()}")
-    print(f"poses within their 95 % covariance: {within.mean():.3f}")
+    apart = 1.96 * within.std() / len(rows) ** 0.5  # poses of one drive err together
+    print(f"poses within their 95 % covariance: {within.mean():.3f} +- {apart:.3f}")
     if true.sum():
         shares = aligned.sum() / true.sum(), by_oracle.sum() / true.sum()
         print(f"shapes right: {shares[0]:.3f} of what true poses give; the oracle's poses {shares[1]:.3f}")

@@ -1,11 +1,12 @@
 """Damaged files: every reader gets mutants of a file that it can read, and refuses them in a sentence.
 
-    python -m tests.benchmarks.mutants [N]
+    python -m tests.benchmarks.mutants [N [NAME ...]]
 
-N mutants over all readers, in one process, each from a seed of its own. It prints for each reader how many were read
-and how many refused, the longest time that one took, and by how much the process has grown; and every mutant that
-breaks a rule: an exception that is not documented, a sentence of several lines or without the file's name, or more
-than two seconds of processor time. A file of a megabyte of the densest text of each format is read by itself.
+N mutants over all readers, or those of the files that are named, such as a.log and a.bag; in one process, each from a
+seed of its own. It prints for each reader how many were read and how many refused, the longest time that one took, and
+by how much the process has grown; and every mutant that breaks a rule: an exception that is not documented, a sentence
+of several lines or without the file's name, or more than two seconds of processor time. A file of a megabyte of the
+densest text of each format is read by itself.
 """
 
 import io
@@ -241,10 +242,11 @@ def tried(name, read, path):
     return fine, seconds, broken or (f"{seconds:.1f} s" if seconds > SECONDS else "")
 
 
-def run(n, folder, seed=0):
+def run(n, folder, seed=0, names=()):
     """Try n mutants, the readers in turn; return what came out for each reader."""
     readers = seeds(folder)
     everything = [data for data, _ in readers.values()]
+    readers = {name: reader for name, reader in readers.items() if name in (names or readers)}
     out = {name: SimpleNamespace(read=0, refused=0, longest=0.0, broken=[]) for name in readers}
     for number in range(n):
         name = list(readers)[number % len(readers)]
@@ -260,7 +262,7 @@ def run(n, folder, seed=0):
     return out
 
 
-def main(n):
+def main(n=100_000, *names):
     import resource
     import warnings
 
@@ -268,7 +270,7 @@ def main(n):
     with tempfile.TemporaryDirectory() as once, tempfile.TemporaryDirectory() as folder:
         run(80, Path(once))  # everything is loaded, and the process has its size
         before, start = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, time.process_time()
-        out = run(n, Path(folder))
+        out = run(int(n), Path(folder), names=names)
         grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
     seconds = time.process_time() - start
     print(f"{n} mutants in {seconds:.0f} s of processor time; the process grew by {grown / 1024:.0f} MB")
@@ -280,4 +282,4 @@ def main(n):
 
 
 if __name__ == "__main__":
-    sys.exit(min(1, main(int(sys.argv[1]) if len(sys.argv) > 1 else 100_000)))
+    sys.exit(min(1, main(*sys.argv[1:])))
