@@ -100,6 +100,19 @@ def test_mujoco_sees_the_same(seed):
     assert edges < n / 20
 
 
+def test_the_recording_of_lesson_10_is_what_its_script_makes():
+    """Its first two sides: another version of MuJoCo may skid a little otherwise."""
+    from tests.benchmarks import simulated_arena as arena
+
+    stored = pk.load_scans(arena.OUT / "arena.log.gz")
+    _, told, seen = arena.drive(arena.ARENA, arena.WAY[:3])
+    stored = stored[: len(told)]
+    np.testing.assert_allclose(stored.poses, told, atol=0.002)
+    clear = stored.hits & (stored.ranges > arena.LEAST)
+    assert np.abs(stored.ranges - seen)[clear].max() < 6 * arena.NOISE
+    assert clear.sum() > 2000
+
+
 def main(n):
     total, edges, differ, most, seed = 0, 0, 0, 0.0, 1000
     while total < n:

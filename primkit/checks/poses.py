@@ -31,6 +31,8 @@ from .answer import Check, Fault, off_only_where
 from .cases import RANDOM_CASES, Args, random_cases
 
 STEP_CLOSE = 1e-5  # m or rad: what a Jacobian by differences may cost
+MANY_STEPS = 8
+POSE_CASES = 100  # each needs a matrix
 MOST_SKEWED = 50.0  # condition of a Jacobian, from which on walls hardly tell a pose
 
 
@@ -244,7 +246,7 @@ def _slipped(rng: np.random.Generator) -> Iterator[Args]:
         skewed = np.linalg.cond(slopes(turned(seen, pose[2]), normals)) > MOST_SKEWED
         return None if skewed else (pose, seen, normals, offsets)
 
-    yield from random_cases(draw)
+    yield from random_cases(draw, POSE_CASES)
 
 
 def _tells_all(args: Args) -> bool:
@@ -266,7 +268,7 @@ def _with(jacobian: Callable[[Floats, Floats, Floats], Floats]) -> Callable[...,
 
 def _many(*args: Floats) -> Floats:
     pose, *seen = args
-    for _ in range(20):
+    for _ in range(MANY_STEPS):
         pose = wall_step(pose, *seen)
     return pose
 

@@ -118,7 +118,7 @@ def show_maps(maps: Mapping[str, Scans], world: World, *, sizes: Sequence[float]
                 frame.segments(world.walls[:, 0], world.walls[:, 1], INK, 1),
                 *(frame.shape(shape, INK, 1, fill=0) for shape in world.shapes),
                 frame.polyline(scans.poses[:, :2], ORANGE, 2),
-                title=f"Half of the hits lie within {half:.0f} mm of the truth",
+                title=f"Half of the hits within {half:.0f} mm of the truth, 95 % within {most:.0f} mm",
                 says=f"half of the {len(points)} hits lie within {half:.0f} mm of a true outline, and 95 % within "
                 f"{most:.0f} mm.",
                 legend=MAP_LEGEND,

@@ -101,7 +101,7 @@ def third(column):
 
 
 def until_it_rests(pose, hits, normals, offsets):
-    for _ in range(30):
+    for _ in range(8):
         pose = by_pinv(pose, hits, normals, offsets)
     return pose
 

@@ -13,6 +13,7 @@ from functools import reduce
 
 import numpy as np
 from scipy import ndimage, optimize, spatial
+from scipy.linalg import lstsq as linalg_lstsq
 from scipy.linalg import null_space
 from shapely import LineString, MultiPoint, Point, Polygon
 from sklearn import metrics
@@ -754,6 +755,104 @@ SEEN = {
     "squares": lambda o, p, r: (((o[:, None] - p[None]) ** 2).sum(axis=2).min(axis=1) <= r * r).mean(),
 }
 
+# --- 10: poses --------------------------------------------------------------------------------------------------
+
+
+def cleaned_by_mask(ranges, low, high):
+    masked = np.ma.masked_invalid(ranges)
+    return np.ma.masked_where((masked <= 0) | (masked < low) | (masked >= high), masked).filled(INF)
+
+
+def cleaned_by_copying(ranges, low, high):
+    clean = np.full(ranges.shape, INF)
+    np.copyto(clean, ranges, where=(ranges > 0) & (low <= ranges) & (ranges < high))
+    return clean
+
+
+def turning_matrix(angle):
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([(c, -s), (s, c)])
+
+
+def off_in_plain_python(pose, hits, normals, offsets):
+    (x, y, heading), found = pose, []
+    for (u, v), (n, m), d in zip(hits, normals, offsets, strict=True):
+        there = x + u * math.cos(heading) - v * math.sin(heading), y + u * math.sin(heading) + v * math.cos(heading)
+        found.append(n * there[0] + m * there[1] - d)
+    return found
+
+
+def off_by_homogeneous(pose, hits, normals, offsets):
+    moved = np.block([[turning_matrix(pose[2]), np.reshape(pose[:2], (2, 1))], [np.zeros((1, 2)), 1.0]])
+    places, lines = np.column_stack([hits, np.ones(len(hits))]) @ moved.T, np.column_stack([normals, -offsets])
+    return np.einsum("nk,nk->n", places, lines)
+
+
+def off_by_turned_walls(pose, hits, normals, offsets):
+    """As the robot sees it: walls are turned and moved, not hits."""
+    return np.sum(normals @ turning_matrix(pose[2]) * hits, axis=1) - (offsets - normals @ pose[:2])
+
+
+def off_by_bearings(pose, hits, normals, offsets):
+    bearing = np.arctan2(hits[:, 1], hits[:, 0]) + pose[2] - np.arctan2(normals[:, 1], normals[:, 0])
+    return np.hypot(*hits.T) * np.cos(bearing) + normals @ pose[:2] - offsets
+
+
+def off_by_cross_product(pose, hits, normals, offsets):
+    beyond = complexly(hits) * np.exp(1j * pose[2]) + complex(*pose[:2]) - offsets * complexly(normals)
+    return -(np.conj(1j * complexly(normals)) * beyond).imag
+
+
+def off_by_tensor(pose, hits, normals, offsets):
+    return np.einsum("nj,jk,nk->n", normals, turning_matrix(pose[2]), hits) + normals.dot(pose[:2]) - offsets
+
+
+def bends(guess, hits, normals):
+    arms = hits @ turning_matrix(guess[2]).T
+    return np.column_stack([normals, np.cross(np.pad(arms, ((0, 0), (0, 1))), np.pad(normals, ((0, 0), (0, 1))))[:, 2]])
+
+
+def stepped_by(solve):
+    """Return the step that some solver of least squares finds; without hits none."""
+
+    def step(guess, hits, normals, offsets):
+        off = off_by_tensor(guess, hits, normals, offsets)
+        return guess - solve(bends(guess, hits, normals), off) if len(hits) else guess
+
+    return step
+
+
+def by_singular_values(jacobian, off):
+    left, sizes, right = np.linalg.svd(jacobian, full_matrices=False)
+    kept = sizes > 1e-9 * sizes[0]
+    return (off @ left[:, kept] / sizes[kept]) @ right[kept]
+
+
+def by_eigenvectors(jacobian, off):
+    sizes, ways = np.linalg.eigh(jacobian.T @ jacobian)
+    kept = sizes > 1e-12 * sizes[-1]
+    return ways[:, kept] @ (ways[:, kept].T @ jacobian.T @ off / sizes[kept])
+
+
+def step_as_the_robot_sees_it(guess, hits, normals, offsets):
+    turn = turning_matrix(guess[2])
+    seen = normals @ turn
+    jacobian = np.column_stack([seen, seen[:, 1] * hits[:, 0] - seen[:, 0] * hits[:, 1]])
+    x, y, angle = np.linalg.lstsq(jacobian, -off_by_turned_walls(guess, hits, normals, offsets), rcond=None)[0]
+    return np.array([*(guess[:2] + turn @ (x, y)), guess[2] + angle])
+
+
+def step_by_complex_numbers(guess, hits, normals, offsets):
+    """The Jacobian from residuals at poses that are off by an imaginary hair."""
+    columns = []
+    for way in 1e-20j * np.eye(3):
+        x, y, heading = guess + way
+        c, s = np.cos(heading), np.sin(heading)
+        places = np.column_stack([x + hits @ (c, -s), y + hits @ (s, c)])
+        columns.append(((normals * places).sum(axis=1) - offsets).imag / 1e-20)
+    return guess - np.linalg.pinv(np.transpose(columns)) @ off_by_tensor(guess, hits, normals, offsets)
+
+
 WAYS = {
     "ray_segment": {
         "plain": segment_in_plain_python,
@@ -881,4 +980,26 @@ WAYS = {
         "quadrature": drive_by_quadrature,
     },
     "share_seen": {name: seen_if_any(share) for name, share in SEEN.items()},
+    "clean_ranges": {
+        "mask": cleaned_by_mask,
+        "copying": cleaned_by_copying,
+        "select": lambda r, low, high: np.select([r <= 0, r < low, r >= high, r != r], [INF] * 4, r),
+        "bins": lambda r, low, high: np.where(np.digitize(r, [max(low, np.nextafter(0, 1)), high]) == 1, r, INF),
+        "iterator": lambda r, low, high: np.fromiter((x if 0 < x >= low and x < high else INF for x in r), float),
+    },
+    "wall_residuals": {
+        "plain": off_in_plain_python,
+        "homogeneous": off_by_homogeneous,
+        "turned walls": off_by_turned_walls,
+        "bearings": off_by_bearings,
+        "cross product": off_by_cross_product,
+        "tensor": off_by_tensor,
+    },
+    "newton_step": {
+        "scipy": stepped_by(lambda jacobian, off: linalg_lstsq(jacobian, off)[0]),
+        "singular values": stepped_by(by_singular_values),
+        "eigenvectors": stepped_by(by_eigenvectors),
+        "as the robot sees it": step_as_the_robot_sees_it,
+        "complex numbers": step_by_complex_numbers,
+    },
 }
