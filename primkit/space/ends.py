@@ -53,6 +53,14 @@ def outward(solid: Solid, k: int) -> float:
     return 1.0 if k - first >= (solid.numbers - first) // 2 else -1.0
 
 
+def grown(solid: Solid, ends: dict[int, End] | None = None, known: float = 0.0) -> Solid:
+    """Return the solid ``FARTHEST_END`` longer at each end, or at those that are known worse than ``known``, metres."""
+    step = np.zeros(solid.numbers)
+    for k in range(FIRST_END[solid.kind], solid.numbers):
+        step[k] = outward(solid, k) * FARTHEST_END * (ends is None or ends[k].std > known)
+    return solid.moved(step)
+
+
 def end_of(solid: Solid, k: int, beams: Beams, ground: Plane | None) -> End:
     """Return where the end with number k is, all others as they are."""
     j = (k - FIRST_END["box"]) % 3 if solid.kind == "box" else 2  # the axis that the end lies across

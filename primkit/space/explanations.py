@@ -16,7 +16,7 @@ import numpy as np
 
 from ..arguments import Floats
 from .along_beam import ON_IT, Beams, Pulls, information, likelihood, refine
-from .ends import FIRST_END, End, end_of, outward
+from .ends import FIRST_END, End, end_of, grown, outward
 from .solids import Plane, Solid, hit
 from .starts import ENOUGH, REACHES, misfit, starts
 
@@ -66,6 +66,7 @@ def explanations(beams: Beams, ground: Plane | None, *, rng: np.random.Generator
 def explained(solid: Solid, beams: Beams, ground: Plane | None) -> Explanation:
     """Return the explanation that a start leads to."""
     solid = refine(solid, beams)
+    beams = beams[beams.own | (hit(grown(solid), beams.origins, beams.directions) < np.inf)]  # others tell nothing
     ends = dict[int, End]()
     told = np.zeros((solid.numbers, solid.numbers))
     for _ in range(LOOKS_AT_ENDS):

@@ -27,7 +27,7 @@ import numpy as np
 
 from ..arguments import Floats, Ints, as_rng, check_type
 from .along_beam import ON_IT, Beams
-from .ends import FARTHEST_END
+from .ends import FARTHEST_END, grown
 from .explanations import Explanation, explanations
 from .ground import LEAST_RETURNS, find_ground, groups, linked
 from .lidar3d import Cloud
@@ -37,7 +37,7 @@ from .solids import Plane, Solid, SolidKind, hit
 CERTAIN = 10.0  # evidence ahead of the next kind: very strong (Kass and Raftery, 1995)
 THIN = (0.1, 0.07, 0.05)  # m: a group that no solid explains is linked anew, so far apart
 NEAR_GROUPS = 0.5  # m: groups whose returns come nearer may be one solid's
-MOSTLY = 0.8  # of a group's returns, that lie on the solid of a larger one
+MOSTLY, NEARLY_IN = 0.8, 0.05  # share of a group's returns that lie on, or in, another's solid; m
 LEAST_ON_FACE = 4  # returns without which a face was not seen
 SETTLED_STD = 0.002  # m: a size that is known worse is open
 SIGMAS_TOLD = 2.5  # standard deviations that a size's interval goes to each side, at least
@@ -216,7 +216,7 @@ def _joined(sight: Sight, found: list[Group], rng: np.random.Generator) -> list[
             if not _close(sight.points(group.members), sight.points(larger.members)):
                 continue
             on_it = _share_on(larger.best.solid, sight.beams(group.members, group.members))
-            if on_it < MOSTLY and larger.best.fits and not (_has_open_end(larger.best) or _has_open_end(group.best)):
+            if on_it < MOSTLY and not (_may_hold(larger, sight, group) or _may_hold(group, sight, larger)):
                 continue
             members = np.union1d(group.members, larger.members)
             ranked = explanations(sight.around(members), sight.ground, rng=rng)
@@ -255,5 +255,7 @@ def _share_on(solid: Solid, beams: Beams) -> float:
     return float((np.abs(beams.ranges - t) <= ON_IT * beams.noise_std).mean())
 
 
-def _has_open_end(explanation: Explanation) -> bool:
-    return any(end.std > SETTLED_STD or end.on_ground for end in explanation.ends.values())
+def _may_hold(group: Group, sight: Sight, other: Group) -> bool:
+    """Tell whether a group's solid may be so large, where its ends are open, that it holds most of another group."""
+    as_large = grown(group.best.solid, group.best.ends, SETTLED_STD)
+    return bool(np.mean(as_large.distance(sight.points(other.members)) <= NEARLY_IN) >= MOSTLY)

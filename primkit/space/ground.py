@@ -30,7 +30,8 @@ from .consensus import PLANE
 from .lidar3d import Cloud
 from .solids import Plane
 
-GROUND_SAMPLE, GROUND_TRIALS, GROUND_REACH = 1500, 100, 0.03  # returns looked at, planes tried, and m
+GROUND_SAMPLE, GROUND_EVERY, GROUND_TRIALS, GROUND_ROUNDS = 12_000, 8, 100, 4  # returns; every so many for the trials
+GROUND_REACH, LEVEL_ENOUGH, LEAST_GROUND = 0.03, 0.9, 50  # m; cosine of the slope; returns
 ON_GROUND = 5.0  # standard deviations along the beam
 USUAL_NOISE, LEAST_RANGE_NOISE = (
     0.01,
@@ -53,32 +54,33 @@ class Ground:
 def find_ground(cloud: Cloud, *, rng: int | np.random.Generator | None = None) -> Ground:
     """Return the plane that most returns lie on, fitted along the beam, and the noise of the ranges that it tells.
 
-    Where fewer than three returns lie on a plane there is none, and the noise is supposed to be 10 mm.
+    Where no level plane has ``LEAST_GROUND`` returns there is none, and the noise is supposed to be 10 mm.
     """
-    pose, layer, azimuth = np.nonzero(cloud.hits)
+    every = -(-int(cloud.hits.sum()) // GROUND_SAMPLE) or 1
+    pose, layer, azimuth = (index[::every] for index in np.nonzero(cloud.hits))
     origins, directions = cloud.origins[pose], cloud.directions()[layer, azimuth]
-    ranges = cloud.ranges[cloud.hits]
+    ranges = cloud.ranges[pose, layer, azimuth]
     points = origins + ranges[:, None] * directions
-    returns = np.zeros(cloud.ranges.shape, dtype=bool)
-    every = -(-len(points) // GROUND_SAMPLE) or 1
-    found = run_ransac(points[::every], PLANE, GROUND_REACH, trials=GROUND_TRIALS, rng=as_rng(rng))
-    if found is None:
-        return Ground(None, USUAL_NOISE, returns)
-    plane, noise, own = _upward(found.params, cloud.origins), USUAL_NOISE, found.inliers
-    for _ in range(4):
+    nothing = Ground(None, USUAL_NOISE, np.zeros(cloud.ranges.shape, dtype=bool))
+    found = run_ransac(points[::GROUND_EVERY], PLANE, GROUND_REACH, trials=GROUND_TRIALS, rng=as_rng(rng))
+    if found is None or abs(found.params[2]) < LEVEL_ENOUGH:
+        return nothing
+    plane, noise = Plane(found.params[:3], found.params[3]), USUAL_NOISE
+    for _ in range(GROUND_ROUNDS):
         off = ranges - plane.hit(origins, directions)
         own = np.abs(off) <= ON_GROUND * noise
-        slant = directions[own] @ plane.normal
-        # offset and tilt that bring the ranges right: d(range) = (d(offset) - x . d(normal)) / slant
-        x = points[own] - points[own].mean(axis=0)
-        slopes = np.column_stack([np.ones(len(x)), -x @ _level(plane.normal)]) / slant[:, None]
-        step = np.linalg.lstsq(slopes, off[own], rcond=None)[0]
-        normal = plane.normal + _level(plane.normal) @ step[1:]
-        on_it = points[own].mean(axis=0) - plane.signed_distance(points[own].mean(axis=0)[None])[0] * plane.normal
-        plane = Plane(normal, float((on_it + step[0] * plane.normal) @ normal / np.linalg.norm(normal)))
-        noise = max(LEAST_RANGE_NOISE, 1.4826 * float(np.median(np.abs(ranges - plane.hit(origins, directions))[own])))
-    returns[cloud.hits] = np.abs(ranges - plane.hit(origins, directions)) <= ON_GROUND * noise
-    return Ground(plane, noise, returns)
+        if np.count_nonzero(own) < LEAST_GROUND:
+            return nothing
+        noise = max(LEAST_RANGE_NOISE, 1.4826 * float(np.median(np.abs(off[own]))))  # of a normal distribution
+        x, y, z = points[own].T
+        weights = 1 / (directions[own] @ plane.normal)  # a point off by 1 across is off by so much along its beam
+        terms = np.column_stack([np.ones_like(x), x, y]) * weights[:, None]
+        a, b, c = np.linalg.lstsq(terms, z * weights)[0]  # z = a + b x + c y
+        plane = Plane((-b, -c, 1), a / np.sqrt(1 + b * b + c * c))
+    turn = cloud.directions().reshape(-1, 3)
+    to_ground = np.array([plane.hit(origin, turn) for origin in cloud.origins]).reshape(cloud.ranges.shape)
+    with np.errstate(invalid="ignore"):
+        return Ground(plane, noise, cloud.hits & (np.abs(cloud.ranges - to_ground) <= ON_GROUND * noise))
 
 
 def groups(cloud: Cloud, ground: Ground, apart: float = APART) -> list[Ints]:
@@ -121,14 +123,3 @@ def linked(points: Floats, apart: float) -> Ints:
     middle = np.column_stack([np.bincount(cell, x) for x in points.T]) / n[:, None]
     pairs = cKDTree(middle).query_pairs(apart, output_type="ndarray").T
     return components(len(cells), pairs)[cell]
-
-
-def _level(normal: Floats) -> Floats:
-    """Return two directions across a normal, shape (3, 2)."""
-    return np.linalg.svd(normal[None])[2][1:].T
-
-
-def _upward(params: Floats, origins: Floats) -> Plane:
-    """Return the plane with its normal on the side of the sensor."""
-    plane = Plane(params[:3], params[3])
-    return plane if np.median(plane.signed_distance(origins)) >= 0 else Plane(-params[:3], -params[3])

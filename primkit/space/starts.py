@@ -23,9 +23,9 @@ from .along_beam import SOFT, stepped
 from .consensus import PLANE, SPHERE, cylinders_along
 from .solids import Box, Cylinder, Solid, Sphere, frame_of, turn
 
-ENOUGH, ROUNDS_EACH = 200, 2  # points for a start; rounds for each reach
-REACHES = (0.06, 0.03, 0.015, 0.01)  # m, and not below twice the noise: what is near, round by round
-TRIALS, AXES, TURNS_TRIED = 60, 120, 30  # samples; directions all round; steps of a quarter turn
+ENOUGH, ROUNDS_EACH = 150, 2  # points for a start; rounds for each reach
+REACHES = (0.06, 0.025, 0.01)  # m, and not below twice the noise: what is near, round by round
+TRIALS, AXES, TURNS_TRIED = 60, 80, 20  # samples; directions all round; steps of a quarter turn
 PLANES, LEAST_BESIDE, WIDEST = 2, 10, 5.0  # looked for; points beside one that may be an end; m, of a radius
 BEST_AXES, BEST_TURNS = 3, 2  # that are drawn to the points
 OUTERMOST = 2.0  # percent of the points at each end that a first size does not count
