@@ -44,3 +44,4 @@ from .course.personal import personal_world as personal_world
 from . import driving as driving, formats as formats, study as study
 from . import plots as plots, widgets as widgets, scene as scene
 from . import checks as checks, course as course, commands as commands
+from . import space as space

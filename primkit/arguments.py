@@ -36,20 +36,22 @@ class LikelyWrong(UserWarning):
     """Told of a value that is allowed, but is most likely in another unit, or in the wrong place."""
 
 
-def as_points(points: ArrayLike | Iterable[Any], name: str = "points") -> Floats:
-    """Return points as an (N, 2) array of finite floats, or say in one sentence what is wrong.
+def as_points(points: ArrayLike | Iterable[Any], name: str = "points", d: int = 2) -> Floats:
+    """Return points as an (N, d) array of finite floats, or say in one sentence what is wrong.
 
     Parameters
     ----------
-    points : array_like, shape (N, 2)
-        Positions in metres, world frame. An empty sequence gives shape (0, 2).
+    points : array_like, shape (N, d)
+        Positions in metres, world frame. An empty sequence gives shape (0, d).
     name : str
         What the points are called in the error message.
+    d : int
+        How many coordinates a point has.
 
     Raises
     ------
     ValueError
-        If the shape is not (N, 2) or a value is NaN or infinite.
+        If the shape is not (N, d) or a value is NaN or infinite.
 
     Examples
     --------
@@ -59,27 +61,28 @@ def as_points(points: ArrayLike | Iterable[Any], name: str = "points") -> Floats
     (0, 2)
     """
     if hasattr(points, "points"):  # a Grid or Scans, handed in whole
-        raise ValueError(f"{name} must be an (N, 2) array, got a {type(points).__name__}; did you mean its points()?")
-    array = as_floats(points, name, "(N, 2)")
+        raise ValueError(f"{name} must be an (N, {d}) array, got a {type(points).__name__}; did you mean its points()?")
+    array = as_floats(points, name, f"(N, {d})")
     if array.size == 0 and array.ndim <= 2:
-        return np.empty((0, 2))
-    if array.ndim != 2 or array.shape[1] != 2:
-        raise ValueError(f"{name} must have shape (N, 2), got shape {array.shape}")
+        return np.empty((0, d))
+    if array.ndim != 2 or array.shape[1] != d:
+        raise ValueError(f"{name} must have shape (N, {d}), got shape {array.shape}")
     return _all_finite(array, name)
 
 
-def as_point(point: ArrayLike, name: str) -> Floats:
-    """Return one point as an array of two finite floats, or say in one sentence what is wrong.
+def as_point(point: ArrayLike, name: str, d: int = 2) -> Floats:
+    """Return one point as an array of d finite floats, or say in one sentence what is wrong.
 
     >>> as_point((1, 2), "center")
     array([1., 2.])
     """
     try:
-        points = as_points([point], name)
+        points = as_points([point], name, d)
     except ValueError:
-        points = np.empty((0, 2))
+        points = np.empty((0, d))
     if len(points) != 1:
-        raise ValueError(f"{name} must be two finite numbers (x, y), got {short(point)}")
+        rule = {2: "two finite numbers (x, y)", 3: "three finite numbers (x, y, z)"}[d]
+        raise ValueError(f"{name} must be {rule}, got {short(point)}")
     return points[0]
 
 

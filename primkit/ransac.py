@@ -3,7 +3,7 @@
 RANSAC draws the few points that fix a line or circle, counts how many others agree with it, and keeps the model with
 the largest consensus set. All samples are scored as one matrix, trials x points, in blocks that fit the cache.
 
-In:  points, shape (N, 2), metres; a ``Model``; a threshold in metres.
+In:  points, shape (N, 2), or (N, 3) in space, metres; a ``Model``; a threshold in metres.
 Out: ``Consensus``: the model's parameters and which points agree with them; ``None`` when no sample fixed one.
 
 >>> from primkit.lines import LINE
@@ -40,17 +40,20 @@ class Model:
     sample_size : int
         Number of points that fix the model.
     from_samples : callable
-        (T, sample_size, 2) points -> (T, Q) parameters; a row of NaN where a sample fixes nothing.
+        (T, sample_size, D) points -> (T, Q) parameters; a row of NaN where a sample fixes nothing.
     residuals : callable
-        (T, Q) parameters, (N, 2) points -> (T, N) distances in metres, zero or more.
+        (T, Q) parameters, (N, D) points -> (T, N) distances in metres, zero or more.
     fit : callable
-        (N, 2) points -> (Q,) parameters of the best fit.
+        (N, D) points -> (Q,) parameters of the best fit.
+    coordinates : int
+        How many a point has: D.
     """
 
     sample_size: int
     from_samples: Callable[[Floats], Floats]
     residuals: Callable[[Floats, Floats], Floats]
     fit: Callable[[Floats], Floats]
+    coordinates: int = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,12 +79,12 @@ def run_ransac(
 ) -> Consensus | None:
     """Return the model with the largest consensus set among random samples; None when no sample fixes one.
 
-    Raises ValueError if points are not finite (N, 2), the threshold is negative, there is not at least one trial, or
+    Raises ValueError if points are not finite (N, D), the threshold is negative, there is not at least one trial, or
     the score is unknown.
 
     Parameters
     ----------
-    points : array_like, shape (N, 2), metres
+    points : array_like, shape (N, D), metres: as many coordinates as the model's points have
     model : Model
         What is looked for: ``lines.LINE``, ``circles.CIRCLE`` or one of your own.
     threshold : float
@@ -103,7 +106,7 @@ def run_ransac(
     True
     """
     check_type(model, Model, "model must be a Model, such as lines.LINE")
-    points = as_points(points)
+    points = as_points(points, d=model.coordinates)
     threshold, trials = as_positive(threshold, "threshold", zero=True), as_count(trials, "trials")
     limit(trials, MOST_TRIALS, "trials must be at most {}", "see trials_needed")
     if score not in ("count", "truncated"):

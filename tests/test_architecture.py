@@ -40,7 +40,7 @@ ORDER = (
     ),
     *("segmentation", "ransac", "lines", "circles", "seen"),
     *("robust", "measure", "found", "account", "paper", "steps", "pipeline", "rest", "report", "evaluation"),
-    *("formats", "driving", "study", "plots", "widgets", "scene", "checks", "course"),
+    *("space", "formats", "driving", "study", "plots", "widgets", "scene", "checks", "course"),
     *("notebook", "__init__", "commands", "__main__"),
 )
 
@@ -48,12 +48,14 @@ ORDER = (
 KNOWS_ONLY = {
     "raycast": ("arguments", "shapes", "world"),  # exact rays
     "robust": ("arguments", "shapes", "segmentation", "ransac", "lines", "circles", "seen"),  # no grid, LiDAR, pipeline
+    "space": ("arguments", "themed", "palette", "segmentation", "ransac"),  # the story one dimension up, not its rooms
     "formats": ("arguments", "shapes", "show", "world", "robot", "lidar", "measure", "found"),  # no pipeline
 }
 # Rooms that others must not know, though these stand above them; and rooms that nobody knows but these.
 KNOWS_NO = {"widgets": ("plots",), "scene": ("plots", "widgets"), "checks": ("plots", "widgets", "scene")}
 KNOWN_TO = {
     "course": ("commands",),
+    "space": (),
     "widgets": (),
     "scene": (),
     "checks": ("course",),
@@ -305,6 +307,9 @@ BROKEN = {
     "an engine that knows the pipeline": (knows_too_much, "robust.regroup", "from .. import pipeline"),
     "files that know the estimator": (knows_too_much, "formats.maps", "from ..pipeline import find_shapes"),
     "files that know the engine": (knows_too_much, "formats.scans", "from ..robust.evidence import Candidate"),
+    "space that knows the board": (knows_too_much, "space.finding", "from ..pipeline import find_shapes"),
+    "a story that knows space": (knows_too_much, "pipeline", "from .space import find_solids"),
+    "a wing that knows space": (knows_too_much, "formats.maps", "from ..space.solids import Box"),
     "a scene that knows the sliders": (knows_too_much, "scene.page", "from ..widgets.slider import Slider"),
     "sliders that know the scene": (knows_too_much, "widgets.slider", "from ..scene import drive_scene"),
     "sliders that draw with matplotlib's room": (knows_too_much, "widgets.rays", "from ..plots.look import marks"),
@@ -384,7 +389,7 @@ def test_what_is_allowed_is_not_reported(rule: Callable[[str, str], list[str]], 
 
 
 def test_importing_primkit_is_light() -> None:
-    heavies = "matplotlib", "sklearn", "ipywidgets", "anywidget", "pandas"
+    heavies = "matplotlib", "sklearn", "ipywidgets", "anywidget", "pandas", "primkit.space"
     code = f"import sys, primkit; print([name for name in {heavies} if name in sys.modules])"
     assert in_fresh_process(code) == "[]"
 

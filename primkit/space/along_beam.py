@@ -1,0 +1,153 @@
+"""Along the beam: how likely a solid makes what the beams returned, and the solid that makes it most likely.
+
+In:  a solid, and ``Beams``: some returned from the group that it is to explain, all others passed, or were stopped.
+Out: the logarithm of the likelihood; the solid of maximum likelihood, and the information of its numbers.
+
+A beam would meet the solid at range t. What it tells, with a measured range r and noise s along the beam:
+
+    its return is the group's    p = (1 - e) N(r - t; s) + e U     e: share of returns from nowhere, spread over 1 / U
+    it went on, r > t            p = e U / N(0; s)                 a miss: nothing is there, and yet the solid would be
+    it was stopped, r <= t       p = 1                             what is behind is hidden
+
+Ranges change smoothly with the numbers; there, Gauss and Newton's method finds the maximum. Whether a beam hits or
+misses changes in steps; that is what ``ends`` is for.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arguments import Bools, Floats, Ints
+from .solids import Solid, hit
+
+NOWHERE_SHARE, NOWHERE_DENSITY = 0.05, 0.2  # of a group's returns; and per metre
+ON_IT = 4.0  # standard deviations: a return that is so near to where the solid is met says nothing against it
+STEEPEST = 50.0  # m of range per m across: what grazes more tells nothing that is linear
+ROUNDS, DAMPINGS, SETTLED_GAIN = (
+    25,
+    6,
+    1e-3,
+)  # of Gauss and Newton's, and shorter steps in each; gain in log likelihood below which they end
+SOFT = 100.0  # 1 / m^2: what no beam tells is held by this much, so that no step is without end
+LARGEST_SOLID = 10.0  # m: a larger solid is none of these
+
+
+@dataclass(frozen=True, eq=False)
+class Beams:
+    """Beams that bear on a group.
+
+    Parameters
+    ----------
+    origins, directions : arrays, shape (N, 3): where they start, metres, and unit vectors
+    ranges : array, shape (N,): metres, inf where nothing came back
+    own : array of bool, shape (N,): whether the return is one of the group's
+    noise_std : float, of the ranges, metres
+    """
+
+    origins: Floats
+    directions: Floats
+    ranges: Floats
+    own: Bools
+    noise_std: float
+
+    def __getitem__(self, which: Bools | Ints) -> Beams:
+        return Beams(self.origins[which], self.directions[which], self.ranges[which], self.own[which], self.noise_std)
+
+    def points(self) -> Floats:
+        """Return where the beams came back from, shape (N, 3), metres."""
+        return self.origins + self.ranges[:, None] * self.directions
+
+
+def log_likelihoods(t: Floats, beams: Beams) -> Floats:
+    """Return what each beam says of a solid that it would meet at range t, shape (..., N), up to a constant."""
+    s = beams.noise_std
+    peak = 1 / (np.sqrt(2 * np.pi) * s)
+    with np.errstate(invalid="ignore"):
+        gap = (beams.ranges - t) / s
+        near = (1 - NOWHERE_SHARE) * peak * np.exp(-0.5 * np.minimum(gap * gap, 1e3))
+        returned = np.log(near + NOWHERE_SHARE * NOWHERE_DENSITY)
+    missed = np.log(NOWHERE_SHARE * NOWHERE_DENSITY / peak)
+    return np.where(beams.own, returned, np.where(beams.ranges - ON_IT * s > t, missed, 0.0))
+
+
+def likelihood(solid: Solid, beams: Beams) -> float:
+    """Return the logarithm of how likely a solid makes what all beams returned, up to a constant."""
+    return float(log_likelihoods(hit(solid, beams.origins, beams.directions), beams).sum())
+
+
+def linearised(solid: Solid, beams: Beams) -> tuple[Floats, Floats, Floats]:
+    """Return for beams of the group their weights, the ranges' excess over t, (N,), and its slopes, (N, numbers)."""
+    t = hit(solid, beams.origins, beams.directions)
+    met = np.flatnonzero(t < np.inf)
+    o, d, t = beams.origins[met], beams.directions[met], t[met]
+    normals, speeds = solid.speeds(o + t[:, None] * d)
+    slant = (normals * d).sum(axis=1)
+    gap = beams.ranges[met] - t
+    near = (1 - NOWHERE_SHARE) / (np.sqrt(2 * np.pi) * beams.noise_std) * np.exp(-0.5 * (gap / beams.noise_std) ** 2)
+    weights = near / (near + NOWHERE_SHARE * NOWHERE_DENSITY) * (np.abs(slant) > 1 / STEEPEST)
+    return weights, gap, speeds / np.where(slant == 0, np.inf, slant)[:, None]
+
+
+@dataclass(frozen=True, eq=False)
+class Pulls:
+    """What hits and misses want: ``slopes @ step`` near ``at``, metres, with so much ``information``, 1 / m^2.
+
+    Shapes (E, numbers), (E,) and (E,); the step is from the solid that ``refine`` begins with.
+    """
+
+    slopes: Floats
+    at: Floats
+    information: Floats
+
+    def matrix(self) -> Floats:
+        """Return the information of all together, shape (numbers, numbers)."""
+        return (self.slopes.T * self.information) @ self.slopes
+
+
+def refine(solid: Solid, beams: Beams, pulls: Pulls | None = None) -> Solid:
+    """Return the solid of maximum likelihood near this one."""
+    own = beams[beams.own]
+    none = np.empty((0, solid.numbers))
+    pulls = pulls or Pulls(none, none[:, 0], none[:, 0])
+    gone = np.zeros(solid.numbers)  # steps add up: the frame hardly turns
+
+    def merit(tried: Solid, gone: Floats) -> float:
+        return likelihood(tried, own) - 0.5 * float(pulls.information @ (pulls.slopes @ gone - pulls.at) ** 2)
+
+    damping, now = 0.0, merit(solid, gone)
+    for _ in range(ROUNDS):
+        w, e, slopes = linearised(solid, own)
+        by_ranges = slopes.T * w / beams.noise_std**2
+        gradient = by_ranges @ e + (pulls.information * (pulls.at - pulls.slopes @ gone)) @ pulls.slopes
+        curvature = by_ranges @ slopes + pulls.matrix()
+        for _ in range(DAMPINGS):
+            held = curvature + np.diag(damping * np.diag(curvature) + SOFT)
+            step = np.asarray(np.linalg.solve(held, gradient), dtype=float)
+            tried = stepped(solid, step)
+            after = merit(tried, gone + step) if tried is not None else -np.inf
+            if tried is not None and after >= now:
+                break
+            damping = max(10 * damping, 1e-2)
+        else:
+            return solid
+        solid, gone, damping, gain, now = tried, gone + step, damping / 10, after - now, after
+        if gain < SETTLED_GAIN:
+            break
+    return solid
+
+
+def information(solid: Solid, beams: Beams) -> Floats:
+    """Return what the group's ranges tell of the solid's numbers, shape (numbers, numbers)."""
+    w, _, slopes = linearised(solid, beams[beams.own])
+    return (slopes.T * w) @ slopes / beams.noise_std**2
+
+
+def stepped(solid: Solid, step: Floats) -> Solid | None:
+    """Return the solid after a step; None when nothing of that size is left."""
+    try:
+        after = solid.moved(step)
+    except ValueError:
+        return None
+    return after if after.half.max() < LARGEST_SOLID else None
