@@ -29,6 +29,8 @@ from .driving.align import align as align, Alignment as Alignment
 from .driving.steady import steady as steady
 from .driving import explore as explore, Exploration as Exploration
 from .driving.scripted import scripted_route as scripted_route
+from .parts import Composite as Composite, Apart as Apart, take_apart as take_apart
+from .parts import Camera as Camera, Views as Views, look as look, colors_of as colors_of
 from .formats import load_world as load_world, save_world as save_world
 from .formats import load_found as load_found, save_found as save_found
 from .formats import load_scans as load_scans, save_scans as save_scans
@@ -41,7 +43,7 @@ from .plots import plot_story as plot_story, plot_drive as plot_drive, save_figu
 from .scene import drive_scene as drive_scene, replay as replay
 from .course.personal import personal_world as personal_world
 
-from . import driving as driving, formats as formats, study as study
+from . import driving as driving, parts as parts, formats as formats, study as study
 from . import plots as plots, widgets as widgets, scene as scene
 from . import checks as checks, course as course, commands as commands
 from . import space as space

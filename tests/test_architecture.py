@@ -40,7 +40,7 @@ ORDER = (
     ),
     *("segmentation", "ransac", "lines", "circles", "seen"),
     *("robust", "measure", "found", "account", "paper", "steps", "pipeline", "rest", "report", "evaluation"),
-    *("space", "formats", "driving", "study", "plots", "widgets", "scene", "checks", "course"),
+    *("space", "formats", "driving", "parts", "study", "plots", "widgets", "scene", "checks", "course"),
     *("notebook", "__init__", "commands", "__main__"),
 )
 
@@ -56,6 +56,7 @@ KNOWS_NO = {"widgets": ("plots",), "scene": ("plots", "widgets"), "checks": ("pl
 KNOWN_TO = {
     "course": ("commands",),
     "space": (),
+    "parts": (),
     "widgets": (),
     "scene": (),
     "checks": ("course",),
@@ -318,6 +319,7 @@ BROKEN = {
     "checks that draw": (knows_too_much, "checks.answer", "def f():\n    from ..plots import plot_points"),
     "a story that knows the course": (knows_too_much, "pipeline", "from .course import personal"),
     "plots that know the course": (knows_too_much, "plots.look", "from ..course.reporting import report"),
+    "a story that knows composites": (knows_too_much, "evaluation", "def f():\n    from .parts import take_apart"),
     "the driver that knows the study": (knows_too_much, "driving.explore", "from ..study import run_study"),
     "matplotlib": (heavy, "study", "import matplotlib.pyplot as plt"),
     "matplotlib in a function": (heavy, "__main__", "def f():\n    from matplotlib import pyplot"),

@@ -1,0 +1,198 @@
+"""Take apart: from the outline of a composite to its parts, and to what the outline leaves open.
+
+1. The outline is cut into straight pieces and arcs (``pieces.py``).
+2. All parts are proposed that lie in the outline and show on it (``proposals.py``).
+3. Of the sets of parts that explain the outline, the fewest parts win, then the fewest corners, by evidence
+   (``covers.py``); all parts of a set are fitted together (``fitting.py``).
+4. What is open is said: sizes that can change, kinds that could be others (``openness.py``); and how clear all is.
+
+In:  points on the outline of one composite, shape (N, 2), metres; or what ``find_shapes`` found of it.
+Out: ``Apart``: the parts, how they touch, what is open; or ``None`` where the points are no closed outline.
+
+>>> from primkit.parts.composite import Composite
+>>> stadium = Composite([Polygon([(0, 0), (0.2, 0), (0.2, 0.1), (0, 0.1)]), Circle((0.2, 0.05), 0.05)])
+>>> take_apart(stadium.union.outline(300))
+Apart: circle and rectangle, certain; a size of 1 part is open
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arguments import Bools, as_points, as_positive, short
+from ..measure import CELL, Detection, Frame, Other
+from ..robust.evidence import CERTAIN
+from ..robust.scatter import SIGMAS, spread_of
+from ..shapes import Circle, Kind, Polygon, Shape
+from ..table import count
+from .covers import Explanation, explanations, unseen
+from .families import Part, Style
+from .fitting import Sample, outside_union
+from .openness import INSIDE, may_hide_corner, open_sizes, settled, shows_one_corner
+from .pieces import pieces_of
+from .proposals import proposals
+
+LEAST_OUTLINE_POINTS = 30  # an outline of several shapes has a hundred
+NEAR_CELLS, NEAR_SPREADS = 1.5, 2.0  # how far a piece of outline may be off: its own error, and what points scatter
+LEAST_ON_IT, MOST_UNSEEN = 0.97, 0.01  # of the points, and m of the outline: else the parts do not explain them
+STYLES_OF_PARTS = ("paper", "free")
+
+
+@dataclass(frozen=True, eq=False)
+class Apart:
+    """What an outline was taken apart into.
+
+    Parameters
+    ----------
+    parts : tuple of Circle and Polygon
+        Metres, world frame.
+    joints : tuple of (int, int, str)
+        Which parts meet, and how: ``"touch"`` or ``"overlap"``.
+    open_sizes : tuple of tuple of bool
+        For each part, which of its ``dimensions`` can change by more than 5 mm and the outline would be the same.
+    could_be : tuple of tuple of str
+        For each part, of which other kinds it could be.
+    margin : float
+        How much better these parts explain the points than the best set of other kinds, on the scale of
+        ``Detection.margin``; infinite without a rival.
+    fits : bool
+        Whether the parts explain the points at all.
+    """
+
+    parts: tuple[Shape, ...]
+    joints: tuple[tuple[int, int, str], ...]
+    open_sizes: tuple[tuple[bool, ...], ...]
+    could_be: tuple[tuple[Kind, ...], ...]
+    margin: float
+    fits: bool
+
+    @property
+    def certain(self) -> bool:
+        """Whether number and kinds are beyond doubt: the parts fit, no rival comes near, and no kind is open."""
+        return self.fits and self.margin >= CERTAIN and not any(self.could_be)
+
+    def __repr__(self) -> str:
+        kinds = sorted(part.kind for part in self.parts)
+        named = " and ".join([", ".join(kinds[:-1]), kinds[-1]]) if len(kinds) > 1 else kinds[0]
+        sizes = sum(map(any, self.open_sizes))
+        told = f"; a size of {count(sizes, 'part')} is open" if sizes else ""
+        return f"Apart: {named}, {'certain' if self.certain else 'not certain'}{told}"
+
+
+def take_apart(
+    found: Detection | Other | ArrayLike,
+    *,
+    style: Style = "paper",
+    spread: float | None = None,
+    resolution: float = CELL,
+    colors: ArrayLike | None = None,
+) -> Apart | None:
+    """Return the fewest basic shapes of which an outline is the union, and what it leaves open.
+
+    Raises ValueError if the points are not finite (N, 2), the style is unknown, the spread or resolution not above
+    zero, or there is not one colour for each point.
+
+    Parameters
+    ----------
+    found : Detection, Other, or array_like, shape (N, 2)
+        What ``find_shapes`` found of the composite, or points on its outline, metres.
+    style : {"paper", "free"}
+        Whether triangles have two sides alike and pentagons are regular, or their corners are free.
+    spread : float, optional
+        Standard deviation of the points from the outline, metres; told from the points when not given.
+    resolution : float
+        Side of the cells that the points lie on, metres.
+    colors : array_like of int, shape (N,), optional
+        What a camera tells of each point: the number of its colour, -1 for unknown. A part has one colour.
+
+    Examples
+    --------
+    Two boxes side by side are one to a LiDAR; a camera parts them:
+
+    >>> box = Polygon([(0, 0), (0.2, 0), (0.2, 0.1), (0, 0.1)]).outline(300)
+    >>> len(take_apart(box).parts), len(take_apart(box, colors=box[:, 0] > 0.1).parts)
+    (1, 2)
+    """
+    points = as_points(found.points if isinstance(found, (Detection, Other)) else found)
+    if style not in STYLES_OF_PARTS:
+        raise ValueError(f'style must be "paper" or "free", got {short(style)}')
+    labels = None if colors is None else np.asarray(colors).astype(int)
+    if labels is not None and labels.shape != (len(points),):
+        raise ValueError(f"colors must be one for each of the {len(points)} points, got shape {labels.shape}")
+    frame = Frame.of(points, as_positive(resolution, "resolution"))
+    local = frame.local(points)
+    if len(local) < LEAST_OUTLINE_POINTS:
+        return None
+    middle = local.mean(axis=0)
+    local = local - middle
+    spread = spread_of(local) if spread is None else as_positive(spread, "spread") / frame.unit
+    sample = Sample(local, spread, labels)
+    ranked = _ranked(sample, style)
+    return _told(ranked, sample, replace(frame, origin=frame.metres(middle[None])[0])) if ranked else None
+
+
+def _ranked(sample: Sample, style: Style) -> list[Explanation]:
+    """Return the explanations of points around the origin, the best first."""
+    pieces = pieces_of(sample.points, sample.spread, sample.colors)
+    if pieces is None:
+        return []
+    near = NEAR_CELLS * CELL + NEAR_SPREADS * sample.spread
+    pool = [
+        part for color in sorted({piece.color for piece in pieces}) for part in proposals(pieces, near, style, color)
+    ]
+    along = [piece.places() for piece in pieces]
+    colors = np.repeat([piece.color for piece in pieces], [len(places) for places in along])
+    return explanations(pool, Sample(np.concatenate(along), sample.spread, colors), sample, near)
+
+
+def _told(ranked: Sequence[Explanation], sample: Sample, frame: Frame) -> Apart:
+    """Return the best explanation in metres, with what is open about it."""
+    best = ranked[0]
+    parts, pushed = settled(best.parts, sample)
+    others: list[set[Kind]] = [set() for _ in parts]
+    rival = min((e.evidence for e in ranked if e.kinds != best.kinds), default=np.inf)
+    for i, part in enumerate(parts):
+        if part.style == "free" and may_hide_corner(parts, i):
+            others[i].add("pentagon")
+        if shows_one_corner(parts, i):
+            others[i].add("triangle")
+    on_it = np.abs(outside_union(parts, sample.points)) <= SIGMAS * sample.spread + CELL
+    return Apart(
+        parts=tuple(_in_metres(part, frame) for part in parts),
+        joints=_joints(parts),
+        open_sizes=tuple(tuple(_by_dimension(part, open_sizes(parts, i) | pushed[i])) for i, part in enumerate(parts)),
+        could_be=tuple(tuple(sorted(kinds)) for kinds in others),
+        margin=float(rival - best.evidence),
+        fits=bool(on_it.mean() >= LEAST_ON_IT and unseen(parts, sample.points) <= MOST_UNSEEN),
+    )
+
+
+def _in_metres(part: Part, frame: Frame) -> Shape:
+    shape = part.shape
+    if isinstance(shape, Circle):
+        return Circle(frame.metres(shape.center), shape.radius * frame.unit)
+    return Polygon(frame.metres(shape.vertices))
+
+
+def _by_dimension(part: Part, sizes: Bools) -> list[bool]:
+    """Return what is said of sizes in the order of ``shape.dimensions``: a rectangle's longer side is first."""
+    turned = part.kind == "rectangle" and part.x[3] < part.x[4]
+    return [bool(size) for size in (sizes[::-1] if turned else sizes)]
+
+
+def _joints(parts: Sequence[Part]) -> tuple[tuple[int, int, str], ...]:
+    """Return which parts meet, and whether they only touch."""
+    import shapely
+
+    solid = [part.shape.to_shapely().buffer(INSIDE / 2) for part in parts]
+    meets = []
+    for i, a in enumerate(solid):
+        for j in range(i + 1, len(solid)):
+            both = shapely.intersection(a, solid[j])
+            if not both.is_empty:
+                meets.append((i, j, "touch" if both.buffer(-INSIDE).is_empty else "overlap"))
+    return tuple(meets)

@@ -1,0 +1,152 @@
+"""Openness: what an outline leaves open about the parts that it is the union of.
+
+A union hides what lies inside. Two questions, for each part of an explanation:
+
+1. *Sizes.* Can a size change by SIZE_STEP while no place of the outline moves by more than SAME? Of all changes dx of
+   the part's numbers that change the size so much, the one that moves the shown places least is a linear programme::
+
+       least t  with  -t <= J dx <= t,  D dx = +-SIZE_STEP
+
+   J: how the shown places move with the numbers, D: how the size does. The change is then made, and the outlines are
+   compared. What points alone leave open is found by pushing each size, and looking whether it comes back.
+2. *Kinds.* A stretch of a part's hull that lies inside the union, LEAST_FREE_SIDE long or longer, may hide a corner:
+   in the style "free" a part with fewer than five corners may then be a pentagon. A part that shows one corner alone
+   could be a triangle. Which other kinds explain the points as well is a matter of evidence (``apart.py``).
+
+In:  the ``Part``s of an explanation.
+Out: for each part, which of its sizes are open; and how much of its hull hides a stretch.
+
+>>> tall = Part("rectangle", np.array([0.0, 0.0, 0.0, 0.1, 0.3]))
+>>> wide = Part("rectangle", np.array([0.1, -0.1, 0.0, 0.2, 0.1]))  # its left end lies somewhere inside the tall one
+>>> open_sizes([tall, wide], 0).tolist(), open_sizes([tall, wide], 1).tolist()
+([False, False], [True, False])
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..arguments import Bools, Floats
+from ..random_shapes import LEAST_FREE_SIDE
+from .covers import full_cost, outline_of
+from .families import Part
+from .fitting import Sample, fitted, outside_union
+
+SIZE_STEP, SAME = 0.006, 0.001  # m: sizes that differ by more are different, outlines that differ by less are the same
+ROOM = 0.05  # m and rad: numbers change by no more
+SMALL = 1e-3  # what a change of the numbers costs beside one of the outline: the smallest change is taken
+PUSH, WORTH_A_FIT, AS_GOOD, STEPS_AGAIN = 0.012, 150.0, 2.0, 5  # m; costs, and steps of fitting
+ROUGHLY = 0.003  # m between two outlines that may both be a little off
+INSIDE = 0.003  # m from the outline: that deep, a stretch of hull is hidden
+
+
+def open_sizes(parts: Sequence[Part], i: int) -> Bools:
+    """Return which sizes of part i can change while the outline of the union does not, shape (S,).
+
+    Of a triangle the corners are taken to be free: that two of its sides are alike is no measurement.
+    """
+    from scipy.optimize import linprog
+
+    parts = [*parts[:i], parts[i].freed(), *parts[i + 1 :]]
+    part, others = parts[i], [*parts[:i], *parts[i + 1 :]]
+    shown = shown_places(part, others)
+    n = len(part.x)
+    J, D = part.distance(shown)[1], _size_slopes(part)
+    none, one = np.zeros((len(J), n)), -np.ones((len(J), 1))
+    eye, zero = np.eye(n), np.zeros((n, 1))
+    limits = np.block([[J, none, one], [-J, none, one], [eye, -eye, zero], [-eye, -eye, zero]])
+    price = np.concatenate([np.zeros(n), np.full(n, SMALL), [1.0]])
+    bounds = [(-ROOM, ROOM)] * n + [(0, None)] * (n + 1)
+    is_open = np.zeros(len(D), dtype=bool)
+    before = outline_of(parts)
+    for k, slope in enumerate(D):
+        for step in (SIZE_STEP, -SIZE_STEP):
+            equal = np.concatenate([slope, np.zeros(n + 1)])[None]
+            best = linprog(price, limits, np.zeros(len(limits)), equal, [step], bounds)
+            if best.status == 0 and best.x[-1] <= SAME:
+                changed = part.with_numbers(part.x + best.x[:n])
+                is_open[k] |= changed.sound and _same_outline(before, parts, [*others, changed], 1.5 * SAME)
+    return is_open
+
+
+def shown_places(part: Part, others: Sequence[Part], step: float = 0.002) -> Floats:
+    """Return places of a part's outline that lie outside the other parts, off its corners, shape (M, 2), metres."""
+    ring = part.shape.outline(max(12, int(part.shape.perimeter / step)))
+    if part.kind != "circle":
+        ring = ring[np.hypot(*(ring[:, None] - part.corners).transpose(2, 0, 1)).min(axis=1) > SAME / 2]
+    return ring[outside_union(others, ring) > SAME] if others else ring
+
+
+def _size_slopes(part: Part) -> Floats:
+    """Return the derivatives of a part's sizes by its numbers, shape (S, n)."""
+    if part.kind == "circle":
+        return np.array([[0.0, 0.0, 1.0]])
+    along = np.roll(part.corners, -1, axis=0) - part.corners
+    along /= np.hypot(*along.T)[:, None]
+    slopes = np.einsum("kc,kcn->kn", along, np.roll(part.slopes, -1, axis=0) - part.slopes)
+    return slopes[:2] if part.kind == "rectangle" else slopes
+
+
+def _same_outline(before: Floats, parts: Sequence[Part], changed: Sequence[Part], same: float) -> bool:
+    """Tell whether two unions have the same outline: each lies along the other's."""
+    moved = np.abs(outside_union(changed, before)).max()
+    return bool(max(moved, np.abs(outside_union(parts, outline_of(changed))).max()) <= same)
+
+
+def settled(parts: Sequence[Part], sample: Sample) -> tuple[list[Part], list[Bools]]:
+    """Return the parts with their hidden sides off the outline, and which sizes were found to be open on the way.
+
+    A hidden side may have come to lie at the edge of where it can. Each size is pushed by PUSH, and all is fitted anew:
+    a side that was seen comes back, or the points are missed; what costs nothing and stays is open.
+    """
+    parts, is_open = list(parts), []
+    cost = full_cost(parts, sample)
+    for i, part in enumerate(parts):
+        slopes = _size_slopes(part)
+        found = np.zeros(len(slopes), dtype=bool)
+        for k in range(len(slopes)):
+            for push in (-PUSH, PUSH):
+                step = _least_change(parts, i, k, push)
+                tried = [*parts[:i], parts[i].with_numbers(parts[i].x + step), *parts[i + 1 :]]
+                if not tried[i].sound or full_cost(tried, sample) > cost + WORTH_A_FIT:
+                    continue
+                tried = fitted(tried, sample, steps=STEPS_AGAIN)
+                away = (_size_slopes(parts[i]) @ (tried[i].x - parts[i].x))[k] / push
+                alike = away > SIZE_STEP / PUSH and _same_outline(outline_of(parts), parts, tried, ROUGHLY)
+                if alike and (new := full_cost(tried, sample)) <= cost + AS_GOOD:
+                    found[k], parts, cost = True, tried, min(cost, new)
+        is_open.append(found)
+    return parts, is_open
+
+
+def _least_change(parts: Sequence[Part], i: int, k: int, step: float) -> Floats:
+    """Return the change of part i's numbers that changes size k by a step and moves what it shows least, shape (n,)."""
+    shown = shown_places(parts[i], [*parts[:i], *parts[i + 1 :]])
+    J, d = parts[i].distance(shown)[1], _size_slopes(parts[i])[k]
+    stiff = J.T @ J + 1e-3 * max(1, len(J)) * np.eye(len(d))
+    soft = np.linalg.solve(stiff, d)
+    return step * soft / (d @ soft)
+
+
+def may_hide_corner(parts: Sequence[Part], i: int) -> bool:
+    """Tell whether a stretch of the hull of what part i shows lies inside the union, and has room for a corner."""
+    import shapely
+    from scipy.spatial import cKDTree
+
+    others = [*parts[:i], *parts[i + 1 :]]
+    shown = shown_places(parts[i], others)
+    if parts[i].kind in ("circle", "pentagon") or len(shown) < 3 or not others:
+        return False
+    ring = shapely.get_coordinates(shapely.MultiPoint(shown).convex_hull.exterior.segmentize(0.001))
+    hidden = cKDTree(outline_of(parts, 0.001, SAME)).query(ring)[0] > INSIDE
+    return 0.001 * int(hidden.sum()) > LEAST_FREE_SIDE
+
+
+def shows_one_corner(parts: Sequence[Part], i: int) -> bool:
+    """Tell whether at most one corner of part i lies outside the other parts: a triangle could have that one, too."""
+    others = [*parts[:i], *parts[i + 1 :]]
+    if parts[i].kind not in ("rectangle", "pentagon") or not others:
+        return False
+    return int((outside_union(others, parts[i].corners) > INSIDE).sum()) <= 1

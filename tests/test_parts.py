@@ -1,0 +1,232 @@
+"""Composites: what a world sees of them, how they are taken apart, and what is said to be open."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import shapely
+
+import primkit as pk
+from primkit.parts import Apart, Composite
+from primkit.parts.families import Part
+from primkit.parts.fitting import Sample, fitted, outside_union
+from primkit.parts.openness import may_hide_corner, open_sizes
+from primkit.parts.pieces import pieces_of
+from primkit.parts.proposals import proposals
+
+BOX = pk.Polygon([(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (-0.1, 0.05)])
+PENTAGON = pk.Polygon(0.07 * np.column_stack([np.cos(t := np.arange(5) * 0.4 * np.pi), np.sin(t)]))
+COMPOSITES = {
+    "stadium": (Composite([BOX, pk.Circle((0.1, 0.0), 0.05)]), "touch"),
+    "L": (Composite([BOX, pk.Polygon([(-0.1, 0.05), (-0.04, 0.05), (-0.04, 0.2), (-0.1, 0.2)])]), "touch"),
+    "house": (Composite([BOX, pk.Polygon([(-0.1, 0.05), (0.1, 0.05), (0, 0.15)])]), "touch"),
+    "box in a pentagon": (Composite([BOX.moved((0.1, 0), 0.2), PENTAGON]), "overlap"),
+    "two circles": (Composite([pk.Circle((0, 0), 0.06), pk.Circle((0.08, 0), 0.05)]), "overlap"),
+}
+
+
+def seen(composite: Composite, noise_std: float = 0.0, seed: int = 0) -> np.ndarray:
+    """Return the points of a board on which the composite stands alone."""
+    world, grid = pk.World([composite.union]), pk.Grid()
+    grid.add(pk.scan(world, pk.teleport_poses(world), pk.Lidar(noise_std=noise_std), rng=seed))
+    return grid.points()
+
+
+@pytest.fixture(scope="module")
+def apart() -> dict[str, Apart | None]:
+    return {name: pk.take_apart(seen(composite, 0.001)) for name, (composite, _) in COMPOSITES.items()}
+
+
+@pytest.mark.parametrize("name", COMPOSITES)
+def test_a_composite_is_taken_apart(name: str, apart: dict[str, Apart | None]) -> None:
+    composite, found = COMPOSITES[name][0], apart[name]
+    assert found is not None
+    assert tuple(sorted(part.kind for part in found.parts)) == composite.kinds
+    union, truth = shapely.union_all([part.to_shapely() for part in found.parts]), composite.union.to_shapely()
+    assert union.intersection(truth).area / union.union(truth).area > 0.98
+
+
+def test_how_parts_meet_is_told(apart: dict[str, Apart | None]) -> None:
+    assert [found.joints[0][2] for name in ("house", "two circles") if (found := apart[name])] == ["touch", "overlap"]
+
+
+def test_a_world_sees_the_union_and_nothing_inside() -> None:
+    composite = Composite([BOX, pk.Circle((0.1, 0.0), 0.05)])
+    points = seen(composite)
+    assert np.abs(composite.union.signed_distance(points)).max() < 0.0015
+    assert min(part.signed_distance(points).min() for part in composite.parts) > -0.0015
+
+
+def test_moved_composites_are_rigid() -> None:
+    composite = COMPOSITES["box in a pentagon"][0]
+    moved = composite.moved((0.1, -0.2), 0.7)
+    assert moved.union.area == pytest.approx(composite.union.area)
+    assert np.allclose(moved.union.centroid, composite.union.centroid + np.array((0.1, -0.2)))
+    between = [np.hypot(*(c.parts[0].centroid - c.parts[1].centroid)) for c in (composite, moved)]
+    assert between[0] == pytest.approx(between[1])
+
+
+@pytest.mark.parametrize(
+    ("parts", "message"),
+    [
+        ([BOX, "circle"], "a composite's parts must be Circle or Polygon, got str"),
+        (3, "a composite's parts must be a list of shapes, got 3"),
+        ([BOX, pk.Circle((0.4, 0), 0.05)], "hang together without a hole, got 2 pieces and 0 holes"),
+    ],
+    ids=["a text", "a number", "apart"],
+)
+def test_what_is_no_composite_is_refused(parts: object, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        Composite(parts)  # type: ignore[arg-type]
+
+
+def test_bad_arguments_are_refused() -> None:
+    ring = BOX.outline(100)
+    with pytest.raises(ValueError, match='style must be "paper" or "free", got \'any\''):
+        pk.take_apart(ring, style="any")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="colors must be one for each of the 100 points, got shape"):
+        pk.take_apart(ring, colors=[1, 2])
+
+
+@pytest.mark.parametrize("points", [BOX.outline(20), BOX.outline(200)[:90]], ids=["few", "open"])
+def test_what_does_not_close_is_not_taken_apart(points: np.ndarray) -> None:
+    assert pk.take_apart(points) is None
+
+
+def test_a_hidden_side_is_open_and_a_seen_one_is_not() -> None:
+    tall = Part("rectangle", np.array([0.0, 0.0, 0.0, 0.1, 0.3]))
+    inside = Part("rectangle", np.array([0.1, -0.1, 0.0, 0.2, 0.1]))
+    flush = Part("rectangle", np.array([0.151, -0.1, 0.0, 0.202, 0.1]))
+    assert open_sizes([tall, inside], 1).tolist() == [True, False]
+    assert open_sizes([tall, flush], 1).tolist() == [True, False]
+    assert open_sizes([tall, flush], 0).tolist() == [False, False]
+    assert open_sizes([tall], 0).tolist() == [False, False]
+
+
+def test_a_short_arc_leaves_its_radius_open() -> None:
+    box = Part("rectangle", np.array([0.0, -0.05, 0.0, 0.3, 0.2]))
+    arcs = [Part("circle", np.array([0.0, 0.05 + up, 0.06])) for up in (0.0, -0.048)]
+    assert [open_sizes([box, arc], 1).tolist() for arc in arcs] == [[False], [True]]
+
+
+def test_a_hidden_stretch_may_hide_a_corner() -> None:
+    box, stub = np.array([0.0, 0.0, 0.0, 0.2, 0.2]), np.array([0.1, 0.0, 0.0, 0.1, 0.08])
+    parts = [Part("rectangle", x, "free") for x in (box, stub)]
+    assert [may_hide_corner(parts, i) for i in (0, 1)] == [True, True]
+    assert not may_hide_corner(parts[:1], 0)
+
+
+@pytest.mark.parametrize("style", ["paper", "free"])
+@pytest.mark.parametrize(
+    ("kind", "x"),
+    [
+        ("circle", [0.01, 0.02, 0.05]),
+        ("rectangle", [0.01, 0.02, 0.3, 0.2, 0.1]),
+        ("triangle", [0.01, -0.05, 0.3, 0.2, 0.1]),
+        ("pentagon", [0.01, 0.02, 0.3, 0.08]),
+    ],
+)
+def test_derivatives_are_those_of_the_distance(kind: pk.shapes.Kind, x: list[float], style: str) -> None:
+    part = Part(kind, np.array(x))
+    if style == "free" and kind in ("triangle", "pentagon"):
+        part = Part(kind, part.corners.ravel(), "free")
+    points = 1.02 * part.shape.outline(37) + 0.001  # off the corners, where the derivative jumps
+    slopes = part.distance(points)[1]
+    step = 1e-6
+    for k in range(len(part.x)):
+        ends = [Part(kind, part.x + s * np.eye(len(part.x))[k], part.style).outside(points) for s in (step, -step)]
+        off = np.abs((ends[0] - ends[1]) / (2 * step) - slopes[:, k])
+        assert np.quantile(off, 0.9) < 0.02
+
+
+def test_parts_are_fitted_together() -> None:
+    truth = [Part("rectangle", np.array([0.0, 0.0, 0.1, 0.2, 0.1])), Part("circle", np.array([0.0, 0.05, 0.06]))]
+    ring = np.concatenate([part.shape.outline(200) for part in truth])
+    ring = ring[np.abs(outside_union(truth, ring)) < 1e-9]
+    rough = [Part(part.kind, part.x + 0.004) for part in truth]
+    found = fitted(rough, Sample(ring, 0.0004))
+    assert all(np.allclose(a.x, b.x, atol=1e-4) for a, b in zip(found, truth, strict=True))
+
+
+def test_proposals_lie_in_the_outline() -> None:
+    points = seen(COMPOSITES["box in a pentagon"][0])
+    pieces = pieces_of(points, 0.0004)
+    assert pieces is not None
+    pool = proposals(pieces, 0.002)
+    assert {"rectangle", "pentagon"} <= {part.kind for part in pool}
+    assert np.mean([np.quantile(part.outside(points), 0.03) > -0.004 for part in pool]) == 1
+
+
+# --- the camera ------------------------------------------------------------------------------------------------------
+
+
+def test_a_pinhole_sees_edges_where_they_are() -> None:
+    """The share of a pixel at an edge tells where in the pixel it lies, on the image plane."""
+    box = pk.Polygon([(0.3, -0.02), (0.4, -0.02), (0.4, 0.03), (0.3, 0.03)])
+    camera = pk.Camera()
+    views = pk.look(pk.World([box]), [(0.0, 0.0, 0.0)], camera, colors=[(1, 0, 0)])
+    red = (views.pixels[0, :, 0] - 0.6) / 0.4
+    step = 2 * np.tan(camera.field_of_view / 2) / camera.width
+    assert red.sum() * step == pytest.approx(0.05 / 0.3, abs=step / 8)
+
+
+def test_a_camera_turned_to_the_left_sees_all_farther_right() -> None:
+    world = pk.World([pk.Circle((0.3, 0.0), 0.03)])
+    middle = [
+        np.nonzero(pk.look(world, [(0, 0, 0)], pk.Camera(turned=t)).colors()[0][0] == 0)[0].mean()
+        for t in (0.0, np.radians(5))
+    ]
+    assert middle[1] - middle[0] == pytest.approx(5 / 1.08, abs=0.7)
+
+
+def test_light_does_not_change_hues() -> None:
+    world = pk.World([pk.Circle((0.3, 0.06), 0.05), pk.Circle((0.3, -0.06), 0.05)])
+    camera = pk.Camera(light=0.3, noise_std=0.03)
+    numbers, hues = pk.look(world, [(0, 0, 0)] * 20, camera, colors=[(1, 0, 0), (1, 1, 0)], rng=0).colors()
+    assert np.degrees(hues).round(-1).tolist() == [0, 60]
+    assert (numbers[:, 18] == 0).all()
+    assert (numbers[:, 34] == 1).all()
+
+
+def test_hits_take_the_colour_of_their_bearing() -> None:
+    world = pk.World([pk.Circle((0.2, 0.05), 0.05), pk.Circle((0.2, -0.05), 0.05)])
+    poses = [(0, 0, 0), (0, 0.02, 0.1), (0.4, 0, np.pi)]
+    scans = pk.scan(world, poses)
+    numbers = pk.colors_of(scans, pk.look(world, poses, colors=[(1, 0, 0), (0, 0, 1)]))
+    of_shapes = np.argmin([np.abs(shape.signed_distance(scans.points())) for shape in world.shapes], axis=0)
+    known = numbers >= 0
+    assert known.mean() > 0.7
+    assert (numbers[known] == of_shapes[known]).mean() > 0.9  # a hit at an edge may fall into the pixel beside
+    with pytest.raises(ValueError, match="scans and views must be from the same poses, got 3 and 1"):
+        pk.colors_of(scans, pk.look(world, poses[:1]))
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: pk.Camera(width=0), "width must be"),
+        (lambda: pk.Camera(field_of_view=4), "field_of_view must be below pi radians, got 4"),
+        (lambda: pk.look(pk.World(), [(0, 0, 0)], colors=[(1, 0, 0)]), "colors must be 0 rows of red, green and blue"),
+        (lambda: pk.look("world", [(0, 0, 0)]), "world must be a World"),  # type: ignore[arg-type]
+    ],
+    ids=["no pixel", "too wide", "colours", "world"],
+)
+def test_bad_cameras_are_refused(make: Callable[[], object], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        make()
+
+
+def test_a_camera_parts_what_a_lidar_calls_one() -> None:
+    left, right = BOX.moved((-0.1, 0)), BOX.moved((0.1, 0))
+    world = pk.World([left, right])
+    places = [(x, y) for x in (-0.35, -0.1, 0.1, 0.35) for y in (-0.2, 0.0, 0.2) if y or abs(x) > 0.3]
+    poses = np.array([(x, y, np.arctan2(-y, -x)) for x, y in places])
+    scans = pk.scan(world, poses, pk.Lidar(range_max=0.5), rng=0)
+    colors = pk.colors_of(scans, pk.look(world, poses, pk.Camera(light=0.3, noise_std=0.03), rng=0))
+    alone, both = (pk.take_apart(scans.points(), colors=c) for c in (None, colors))
+    assert alone is not None
+    assert both is not None
+    assert [part.kind for part in alone.parts] == ["rectangle"]
+    assert [part.kind for part in both.parts] == ["rectangle"] * 2
+    assert np.allclose([part.dimensions for part in both.parts], [(0.2, 0.1)] * 2, atol=0.015)
+    assert both.open_sizes == ((True, False), (True, False))  # where one ends inside the other, no sensor sees
