@@ -7,6 +7,7 @@ import json
 import re
 from pathlib import Path
 
+import film
 import links
 import lite
 import pytest
@@ -16,6 +17,7 @@ from lessons import page_of, with_quiz
 
 import primkit as pk
 from primkit import installed
+from primkit.shapes import PRIMITIVES
 from primkit.themed import in_theme
 from primkit.widgets import SLIDERS
 from primkit.widgets.predictions import read_quiz
@@ -79,6 +81,16 @@ def test_a_quiz_is_marked_before_its_first_question():
     mark = '<script type="application/json" class="primkit-quiz">[[true, false]]</script>'
     assert with_quiz(f"## Quiz\n\n**1. So?**\n\n{options}") == f"## Quiz\n\n{mark}\n\n**1. So?**\n\n{options}"
     assert with_quiz("No quiz.") == "No quiz."
+
+
+def test_the_film_on_the_front_page_is_what_the_robot_does():
+    """Apart from a tenth of a pixel, which another processor may round otherwise."""
+    stored, drawn = (
+        re.sub(r"[\d.]+", "0", text) for text in (film.FILM.read_text(encoding="utf-8"), film.front_page())
+    )
+    assert stored == drawn
+    assert [kind for kind in PRIMITIVES if f">{kind}<" not in stored] == []
+    assert "prefers-reduced-motion" in stored
 
 
 def test_a_lesson_in_the_browser_fetches_the_library_first():
