@@ -13,10 +13,12 @@ import shutil
 import subprocess
 import sys
 import time
+import tomllib
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import links
+import lite
 import reference
 from lessons import page_of
 
@@ -52,6 +54,7 @@ def stage(folder):
     """Write the sources of all pages into a folder."""
     shutil.copytree(ROOT / "data" / "pictures", folder / "data" / "pictures")
     texts = {
+        "live.md": live((HERE / "live.md").read_text(encoding="utf-8")),
         "results.md": (HERE / "results.md").read_text(encoding="utf-8"),
         "changelog.md": (ROOT / ".github" / "CHANGELOG.md").read_text(encoding="utf-8"),
         **dict(front((ROOT / "README.md").read_text(encoding="utf-8"), lessons_into(folder / "lessons"))),
@@ -82,10 +85,24 @@ def front(readme, titles):
     """Return the front page and the page behind it, from README.md."""
     intro, _, rest = re.sub(r"<!--.*?-->\n*", "", readme, flags=re.DOTALL).partition("\n## Start\n")
     doors = "\n".join(f"* [{title}](lessons/{name}.ipynb)" for name, title in titles.items())
-    chapters = "start", "lessons/index", "results", "api/index", "teacher/README", "changelog"
-    words = "**[Start here](start.md)**, or read first: all sliders and quizzes on these pages work as they are."
+    chapters = "start", "lessons/index", "live", "results", "api/index", "teacher/README", "changelog"
+    words = "**[Start here](start.md)**, [try it live](live.md), or read: the sliders and quizzes of these pages work."
     yield "index.md", f"{intro}\n\n{words}\n\n## The lessons\n\n{doors}\n\n{tree(chapters)}"
     yield "start.md", f"# Start\n{rest}"
+
+
+def live(text):
+    """Return the page of all doors to a running lesson; those at other people's need an owner's address."""
+    told = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    owner = told["tool"]["hatch"]["metadata"]["hooks"]["custom"]["owner"]
+    doors = {
+        "lite": f"https://{owner}.github.io/primkit/lite/lab/index.html?path=00_start_here.ipynb",
+        "colab": f"https://colab.research.google.com/github/{owner}/primkit/blob/main/notebooks/00_start_here.ipynb",
+        "binder": f"https://mybinder.org/v2/gh/{owner}/primkit/main?labpath=notebooks/00_start_here.ipynb",
+    }
+    waiting = "waits for the project's owner" if owner.isupper() else ""
+    words = {name: waiting or f"[open lesson 00]({door})" for name, door in doors.items()}
+    return text.format(**words, first=lite.FIRST)
 
 
 def tree(pages):

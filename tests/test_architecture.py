@@ -94,7 +94,7 @@ VISIBLE = {
     *("README.md", "environment.txt", "notebooks", "primkit", "data", "tests"),
     *("pyproject.toml", "LICENSE", "CITATION.cff"),
 }
-HIDDEN = {".ci", ".github", ".site", ".gitattributes", ".gitignore"}
+HIDDEN = {".binder", ".ci", ".github", ".site", ".gitattributes", ".gitignore"}
 
 
 def module_name(path: Path) -> str:

@@ -7,13 +7,17 @@ import json
 import re
 from pathlib import Path
 
+import film
 import links
+import lite
 import pytest
 import reference
 import states
 from lessons import page_of, with_quiz
 
 import primkit as pk
+from primkit import installed
+from primkit.shapes import PRIMITIVES
 from primkit.themed import in_theme
 from primkit.widgets import SLIDERS
 from primkit.widgets.predictions import read_quiz
@@ -77,6 +81,24 @@ def test_a_quiz_is_marked_before_its_first_question():
     mark = '<script type="application/json" class="primkit-quiz">[[true, false]]</script>'
     assert with_quiz(f"## Quiz\n\n**1. So?**\n\n{options}") == f"## Quiz\n\n{mark}\n\n**1. So?**\n\n{options}"
     assert with_quiz("No quiz.") == "No quiz."
+
+
+def test_the_film_on_the_front_page_is_what_the_robot_does():
+    """Apart from a tenth of a pixel, which another processor may round otherwise."""
+    stored, drawn = (
+        re.sub(r"[\d.]+", "0", text) for text in (film.FILM.read_text(encoding="utf-8"), film.front_page())
+    )
+    assert stored == drawn
+    assert [kind for kind in PRIMITIVES if f">{kind}<" not in stored] == []
+    assert "prefers-reduced-motion" in stored
+
+
+def test_a_lesson_in_the_browser_fetches_the_library_first():
+    """The same cell everywhere: it never names the package that is somebody else's, and comes before any import."""
+    lesson = lite.with_first_cell(json.loads(LESSONS[0].read_text(encoding="utf-8")))
+    first = next(cell for cell in lesson["cells"] if cell["cell_type"] == "code")
+    assert re.findall(r"^    %pip install -q (.+)$", "".join(first["source"]), re.MULTILINE) == [installed.DISTRIBUTION]
+    assert lesson["cells"][0]["cell_type"] == "markdown"
 
 
 def test_every_public_name_has_its_place_in_the_reference():

@@ -148,6 +148,8 @@ function quiz(script) {
   }
 }
 
+// The theme calls its search field "Search" for who cannot see it, and shows its keys as well.
+for (const field of document.querySelectorAll(".search-button-field")) field.setAttribute("aria-label", field.textContent.trim());
 document.querySelectorAll(".primkit-states").forEach(slider);
 document.querySelectorAll(".primkit-predict").forEach(prediction);
 document.querySelectorAll("script.primkit-quiz").forEach(quiz);
