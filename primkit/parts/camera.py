@@ -31,7 +31,7 @@ from ..raycast import cast_rays
 from ..world import World
 
 RAYS_PER_COLUMN = 8  # a pixel at an edge shows both sides of it, by their shares
-FLOOR = (0.6, 0.6, 0.6)  # what is behind all shapes: grey, so that it has no hue
+FLOOR_COLOR = (0.6, 0.6, 0.6)  # what is behind all shapes: grey, so that it has no hue
 LEAST_SATURATION = 0.35  # below, a pixel is floor, or a mixture with it
 HUES_APART = np.radians(30)  # hues that lie closer are of one colour
 LEAST_OF_HUE = 0.02  # of all pixels with a hue: fewer are mixtures
@@ -175,7 +175,7 @@ def look(
     across = np.interp(share, np.arange(camera.width + 1), np.tan(camera.edges - camera.turned))
     bearings = camera.turned + np.arctan(across)
     ranges = cast_rays(world, poses, bearings[::-1].copy())[:, ::-1]
-    seen = np.concatenate([paint, [FLOOR]])[_shape_hit(world, poses, bearings, ranges)]
+    seen = np.concatenate([paint, [FLOOR_COLOR]])[_shape_hit(world, poses, bearings, ranges)]
     strips = seen.reshape(len(poses), camera.width, RAYS_PER_COLUMN, 3).mean(axis=2)
     strips *= 1 + camera.light * rng.uniform(-1, 1, (len(poses), 1, 1))
     strips += camera.noise_std / np.sqrt(camera.height) * rng.standard_normal(strips.shape)

@@ -35,7 +35,7 @@ from .families import Part
 from .fitting import Sample, fitted, outside_union
 
 SIZE_STEP, SAME = 0.006, 0.001  # m: sizes that differ by more are different, outlines that differ by less are the same
-ROOM = 0.05  # m and rad: numbers change by no more
+MOST_CHANGE = 0.05  # m and rad: numbers change by no more
 SMALL = 1e-3  # what a change of the numbers costs beside one of the outline: the smallest change is taken
 PUSH, WORTH_A_FIT, AS_GOOD, STEPS_AGAIN = 0.012, 150.0, 2.0, 5  # m; costs, and steps of fitting
 ROUGHLY = 0.003  # m between two outlines that may both be a little off
@@ -58,7 +58,7 @@ def open_sizes(parts: Sequence[Part], i: int) -> Bools:
     eye, zero = np.eye(n), np.zeros((n, 1))
     limits = np.block([[J, none, one], [-J, none, one], [eye, -eye, zero], [-eye, -eye, zero]])
     price = np.concatenate([np.zeros(n), np.full(n, SMALL), [1.0]])
-    bounds = [(-ROOM, ROOM)] * n + [(0, None)] * (n + 1)
+    bounds = [(-MOST_CHANGE, MOST_CHANGE)] * n + [(0, None)] * (n + 1)
     is_open = np.zeros(len(D), dtype=bool)
     before = outline_of(parts)
     for k, slope in enumerate(D):
