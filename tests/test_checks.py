@@ -245,11 +245,11 @@ def test_what_is_given_may_not_change_whatever_it_is():
         return cells
 
     def into_the_list(found, true, pairs, tolerance):
-        result = pk.checks.weighted_accuracy.reference(found, true, pairs, tolerance)
+        result = pk.checks.parts.reference(found, true, pairs, tolerance)
         found.clear()
         return result
 
-    for check, mine in ((pk.checks.occupy, into_the_set), (pk.checks.weighted_accuracy, into_the_list)):
+    for check, mine in ((pk.checks.occupy, into_the_set), (pk.checks.parts, into_the_list)):
         assert check(mine).fault == "changes its arguments"
     given = [{1}, pk.Circle((0, 0), 1.0), pk.Polygon([(0, 0), (1, 0), (0, 1)]), np.random.default_rng(0)]
     assert judges.same(given, copy.deepcopy(given))
@@ -259,11 +259,11 @@ def test_what_is_given_may_not_change_whatever_it_is():
 
 def test_the_arguments_that_went_wrong_can_be_tried_again():
     def circles(_found, true, _pairs, _tolerance):
-        return 1.0 * all(shape.kind == "circle" for shape in true)
+        return 3 * (1.0 * all(shape.kind == "circle" for shape in true),)
 
-    answer = pk.checks.weighted_accuracy(lambda *_arguments: 2.0)
-    assert pk.checks.weighted_accuracy.reference(*answer.args) == 1.0
-    assert "a Polygon" not in pk.checks.weighted_accuracy(circles).says
+    answer = pk.checks.parts(lambda *_arguments: (2.0, 2.0, 2.0))
+    assert pk.checks.parts.reference(*answer.args) == (1.0, 1.0, 1.0)
+    assert "a Polygon" not in pk.checks.parts(circles).says
     hidden = pk.checks.fit_line(lambda *_arguments: (0.0, 0.0))
     assert repr(hidden).endswith("\nTry it again: the arguments are _.args.")
     assert "<br>Try it again: the arguments are _.args." in hidden._repr_html_()
