@@ -50,6 +50,10 @@ class Line:
         """Return ``n . p - d`` of each point, shape (N,), metres."""
         return as_points(points) @ self.normal - self.offset
 
+    def moved(self, offset: Floats) -> Line:
+        """Return the line shifted by ``offset``, shape (2,), metres."""
+        return Line(self.angle, self.offset + float(self.normal @ offset))
+
     def turned_round(self) -> Line:
         """Return the same line with the opposite normal."""
         return Line(float(np.arctan2(-np.sin(self.angle), -np.cos(self.angle))), -self.offset)

@@ -309,7 +309,7 @@ def measure_shape(
 
 def as_detection(choice: Choice) -> Detection | None:
     """Return the best candidate with those of the points that lie on it; None when it is no shape."""
-    if choice.shape is None:
+    if choice.shape is None or not choice.on_it.any():
         return None
     points, rms = choice.points[choice.on_it], _rms(choice.distance[choice.on_it])
     return Detection(choice.shape, points, rms, seen=choice.ranked[0].seen, sure=choice, choice=choice)

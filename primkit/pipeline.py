@@ -265,23 +265,17 @@ def _jointly(
     rng: np.random.Generator,
 ) -> tuple[list[Choice], list[float], bool]:
     """Explain each group, and ask for a second opinion on the groups: the default way; tell if a bound was reached."""
-    seed = int(rng.integers(2**63))
-    how = (seed, settings.soft, settings.thorough, kinds)
+    how = (int(rng.integers(2**63)), settings.soft, settings.thorough, kinds)
+    anew = partial(explained, soft=settings.soft, thorough=settings.thorough, kinds=kinds)
     used: WarmStarts = {}
 
     def explain(points: Floats, spread: float) -> Choice:
         key = (points.tobytes(), spread, *how)
         if key not in used:
-            used[key] = warm[key] if key in warm else refitted(points, spread)
+            alike = (old for (_, *before), old in warm.items() if before == [spread, *how])
+            again = (grown(old, points, spread, soft=settings.soft) for old in alike)
+            used[key] = warm.get(key) or next(filter(None, again), None) or anew(points, spread)
         return used[key]
-
-    def refitted(points: Floats, spread: float) -> Choice:
-        alike = (old for (_, *before), old in warm.items() if before == [spread, *how])
-        again = (grown(old, points, spread, soft=settings.soft) for old in alike)
-        group = next((group for group in again if group is not None), None)
-        if group is not None:
-            return group
-        return explained(points, spread, soft=settings.soft, thorough=settings.thorough, kinds=kinds)
 
     last = next((group.spread for group in reversed(warm.values())), None)  # as the last fits left it
     groups, spread = _explain_all(together, settings, last, explain)

@@ -217,3 +217,10 @@ def test_two_shapes_linked_as_one_do_not_pass_for_noise():
     found = pk.find_shapes(seen_on(world), rng=0)
     assert pk.evaluate(found, world).weighted_accuracy == 1.0
     assert all(one.rms < 0.001 for one in found)
+
+
+def test_strays_that_no_shape_goes_through_are_strays():
+    rng = np.random.default_rng([777, 20])
+    world = pk.random_world(1, style="free", rng=rng)
+    grid = seen_on(world, rng, spurious=0.1)  # a group of it has a best shape that none of its points lie on
+    assert [one.kind for one in pk.find_shapes(grid, rng=0)] == [shape.kind for shape in world.shapes]

@@ -23,7 +23,7 @@ Isack and Boykov (2012); 4 Dempster, Laird and Rubin (1977).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -46,7 +46,7 @@ from .evidence import (
     of_sides,
     price,
 )
-from .free import free_outline
+from .free import free_candidate
 from .lack_of_fit import lack_of_fit
 from .outlines import QUARTERS, Outlines, joined
 from .refine import one_side_more, refine_hard, refine_soft, truncated_cost
@@ -61,13 +61,10 @@ MOST_POINTS = 10_000  # of more, an even part is explained, so that the work is 
 ENOUGH_POINTS = 400  # more do not make a first fit much better, and cost time
 STARTS_KEPT = 5  # of the guesses, those closest to the points are refined
 WIDER = 0.005  # m: guesses are judged with a longer reach than fits, because they still lie beside the points
-# m: beyond this spread a short side drowns in its neighbours' points when each is given to one side alone
-BLURRED = 0.002
-# A candidate that is this much worse (in cost) before the last polish is not going to win by it.
-CONTENDER = 40.0
+BLURRED = 0.002  # m: beyond this spread a short side drowns in its neighbours' points, each given to one side alone
+CONTENDER = 40.0  # what costs so much more before the last polish is not going to win by it
 LOOKS, NEARLY_ALL_POINTS = 3, 0.97  # strays lead cuts astray: once more without them, until so many points lie on it
-BEGAN_BADLY = 25.0  # a fit that costs so much more than it could
-CHANCE_OF_A_SIDE = 25.0  # by so much noise alone lets a cut into one piece more come closer
+CHANCE = 25.0  # by so much noise lets a cut into one piece more come closer; what misses its least by more began badly
 RIVAL = 200.0  # and no rival comes near any more
 CIRCLE_LOOKS, KEPT_NEAREST = 2, 0.8  # share of the points that a circle's start is fitted to
 
@@ -120,7 +117,7 @@ def candidates(
     ranked = sorted(done + waiting, key=lambda c: c.cost)
     if "polygon" in kinds and not (ranked and _explains(local, ranked[0], spread)):
         ranked = sorted([*ranked, *free_candidate(local, spread)], key=lambda c: c.cost)
-    return [moved(c, middle) for c in ranked if c.kind in ("wall", *kinds)]
+    return [c.moved(middle) for c in ranked if c.kind in ("wall", *kinds)]
 
 
 def _fits(points: Floats, spread: float, thorough: bool, kinds: Sequence[str]) -> Iterator[tuple[Figure, bool]]:
@@ -199,7 +196,7 @@ class Ways:
         best, winner = np.inf, 0
         for again in (False, True):
             for way in sorted(self.least, key=self.least.__getitem__):
-                least = best - CHANCE_OF_A_SIDE * max(way[0] - winner, 0) if again else best + CERTAIN
+                least = best - CHANCE * max(way[0] - winner, 0) if again else best + CERTAIN
                 if KIND_OF[way] not in kinds or (self.least[way] > least and not thorough):
                     continue
                 cost, figure = self.fitted(way, again=again)
@@ -227,10 +224,10 @@ class Ways:
         k, square = way
         starts = outlines_with(self.cuts, self.spans, k) if k > 1 else None
         if way not in self.done:
-            fit = _circle_through(self.points) if k == 0 else self._from_cuts(starts, square)
-            self.done[way] = self.cost(fit, way), fit
+            begun = _circle_through(self.points) if k == 0 else self._from_cuts(starts, square)
+            self.done[way] = self.cost(begun, way), begun
         cost, fit = self.done[way]
-        if again and cost > self.least[way] + BEGAN_BADLY and starts is not None and way not in self.again:
+        if again and cost > self.least[way] + CHANCE and starts is not None and way not in self.again:
             self.again.add(way)
             begin = frames(self.points, starts) if square else self._one_side_more(k)
             begin = joined(fit, begin) if isinstance(fit, Outlines) else begin
@@ -304,19 +301,12 @@ def explained_again(
     kept = shapes[:1] + [c for c in shapes if c.kind != shapes[0].kind][:1]
     middle = points.mean(axis=0)
     local, again = points - middle, list[Candidate]()
-    for old in (moved(c, -middle) for c in kept):
+    for old in (c.moved(-middle) for c in kept):
         anew: Candidate | None = judged(local, old.figure, spread, square=old.square)
         if anew is not None and (not again or anew.cost < again[0].cost + CONTENDER):
             anew = polished(local, old, spread, soft=soft)
         again += [] if anew is None else [anew]
-    return [moved(c, middle) for c in sorted(again, key=lambda c: c.cost)]
-
-
-def free_candidate(points: Floats, spread: float) -> list[Candidate]:
-    """Return the outline of any straight pieces, judged; nothing where the points do not close."""
-    middle = points.mean(axis=0)
-    outline = free_outline(points - middle, spread)
-    return [] if outline is None else [moved(judged(points - middle, outline, spread), middle)]
+    return [c.moved(middle) for c in sorted(again, key=lambda c: c.cost)]
 
 
 def _explains(points: Floats, best: Candidate, spread: float) -> bool:
@@ -358,13 +348,3 @@ def _polished_circle(points: Floats, circle: Circle, spread: float) -> Circle | 
         if change <= SETTLED_MOVE:
             break
     return circle
-
-
-def moved(candidate: Candidate, offset: Floats) -> Candidate:
-    """Return the candidate, shifted by ``offset``, shape (2,), metres."""
-    figure = candidate.figure
-    if isinstance(figure, Line):
-        figure = Line(figure.angle, figure.offset + float(figure.normal @ offset))
-    else:
-        figure = figure.moved(offset)
-    return replace(candidate, figure=figure)

@@ -18,9 +18,10 @@ from ..circles import straightened
 from ..lines import Line
 from ..seen import seen_shares
 from ..shapes import KINDS, Circle, Polygon, Shape
-from .candidates import candidates, explained_again, free_candidate
+from .candidates import candidates, explained_again
 from .deviations import Certainty, certainty, own_points, short_sides
 from .evidence import CERTAIN, NEARLY_ALL, Candidate
+from .free import free_candidate
 from .lack_of_fit import lack_of_fit
 from .outlines import LEAST_SIDE, Outlines
 from .scatter import SIGMAS, depth_of, noise_of
@@ -109,8 +110,9 @@ class Choice:
         if shape is None:
             return False
         lengths = shape.sides if isinstance(shape, Polygon) else [shape.perimeter]
-        ways = (lambda: self.ranked[0].seen, lambda: seen_shares(shape, self.points))  # by points on it, or else by all
-        return any(np.average(each(), weights=lengths) >= NEARLY_ALL for each in ways)
+        if np.average(self.ranked[0].seen, weights=lengths) >= NEARLY_ALL:  # by those points alone that lie on it
+            return True
+        return bool(np.average(seen_shares(shape, self.points), weights=lengths) >= NEARLY_ALL)
 
     @property
     def lead(self) -> float:

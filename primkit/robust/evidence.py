@@ -18,7 +18,7 @@ the dimension of a model", which leaves out how much was known beforehand.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
@@ -99,6 +99,10 @@ class Candidate:
         if isinstance(self.figure, Outlines):
             return self.figure.kind
         return "circle" if isinstance(self.figure, Circle) else "wall"
+
+    def moved(self, offset: Floats) -> Candidate:
+        """Return the candidate, shifted by ``offset``, shape (2,), metres."""
+        return replace(self, figure=self.figure.moved(offset))
 
 
 def judged(points: Floats, figure: Figure, spread: float, *, square: bool = False) -> Candidate:

@@ -33,7 +33,7 @@ from numpy.typing import NDArray
 
 from ..arguments import Floats
 from .cuts import in_company, long_enough, moments_between, scatter_sums, squares_of
-from .evidence import judged
+from .evidence import Candidate, judged
 from .outlines import Outlines
 from .refine import refine_soft
 from .scatter import CELL, SIGMAS
@@ -50,6 +50,13 @@ SHORT, FLAT_TURN = 4.0, np.radians(35)  # of the least side; where two pieces ma
 ENOUGH_TO_CUT = 600  # points; of more, the least misfit is worth a piece
 CUT_LOOKS = 2  # strays lead cuts astray: once more without them
 FAR_SPREADS, FAR_CELLS = 9.0, 4.0  # what is farther from the first outline is a stray to the second
+
+
+def free_candidate(points: Floats, spread: float) -> list[Candidate]:
+    """Return the outline of any straight pieces, judged; nothing where the points, shape (N, 2), do not close."""
+    middle = points.mean(axis=0)
+    outline = free_outline(points - middle, spread)
+    return [] if outline is None else [judged(points - middle, outline, spread).moved(middle)]
 
 
 def free_outline(points: Floats, spread: float) -> Outlines | None:
