@@ -117,19 +117,27 @@ def more_troubles(ps, rng):
         yield name, Trouble(dumped(with_cell(ps.with_answers(right), code, before=TASK)), ps.points)
 
 
+def person(n):
+    return f"s_{n:03d}", f"Änn{n:03d}", f"O'Test-{'abcdefghij'[n % 10]}{n}"
+
+
+def roster(number):
+    """Return students.csv of a class of so many, as a spreadsheet saves it in much of Europe."""
+    return "\n".join(["id;first_name;last_name;email", *(";".join((*person(n), "")) for n in range(number)), ";;;", ""])
+
+
 def hand_in(folder, ps, rng, number):
-    """Write three downloads of a class of so many; return students.csv, and for each id its Trouble.
+    """Write three downloads of a class of so many; return for each id its Trouble.
 
     One third comes by Moodle, every second one in a zip; one by Canvas; one by nbgrader's exchange.
     """
-    class_, rows, boxes = {}, ["id;first_name;last_name;email"], ({}, {})
+    class_, boxes = {}, ({}, {})
     kinds = []
     while len(class_) < number:
         kinds = kinds or [*troubles(ps, rng), *(more_troubles(ps, rng) if number > 12 else ())]
         kind, trouble = kinds.pop(0)
         n = len(class_)
-        student, first, last = f"s_{n:03d}", f"Änn{n:03d}", f"O'Test-{'abcdefghij'[n % 10]}{n}"
-        rows.append(f"{student};{first};{last};")
+        student, first, last = person(n)
         class_[student] = (kind, trouble)
         versions = [(trouble.earlier, trouble.late_hours - 24)] if trouble.earlier and n % 3 == 2 else []
         for content, hours in [*versions, (trouble.content, trouble.late_hours)]:
@@ -149,7 +157,7 @@ def hand_in(folder, ps, rng, number):
                     (inbound / file).write_bytes(data)
     (folder / "moodle.zip").write_bytes(packed(boxes[0]))
     (folder / "canvas.zip").write_bytes(packed(boxes[1]))
-    return "\n".join(rows) + "\n;;;\n", class_
+    return class_
 
 
 def expected(class_):

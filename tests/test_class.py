@@ -22,7 +22,7 @@ from primkit.course.handed_in import tree_hash
 from primkit.course.handing_back import finish_feedback
 from primkit.course.overview import overview
 from primkit.course.similar import pairs_in
-from tests.classes import PS, SETTINGS, TASK, expected, hand_in
+from tests.classes import PS, SETTINGS, TASK, expected, hand_in, roster
 from tests.submissions import ProblemSet, about, answers_of, read, renamed
 from tests.test_teaching import table, teach
 
@@ -38,10 +38,9 @@ def handed_back(tmp_path_factory):
     config = course / "nbgrader_config.py"
     config.write_text(config.read_text("utf-8").replace("c.CarefulExecute.seconds = 5", "c.CarefulExecute.seconds = 1"))
     (course / "course.toml").write_text(SETTINGS)
-    teach(course, "release", PS)
-    rows, class_ = hand_in(folder, ProblemSet(course, PS), np.random.default_rng(1), 12)
-    (course / "students.csv").write_bytes(rows.encode("utf-16"))
+    (course / "students.csv").write_bytes(roster(12).encode("utf-16"))
     said = {"release": teach(course, "release", PS)}
+    class_ = hand_in(folder, ProblemSet(course, PS), np.random.default_rng(1), 12)
     said["collect"] = teach(course, "collect", PS, *(folder / name for name in ("moodle.zip", "canvas.zip", "inbound")))
     if os.name == "posix":  # T2
         with open(os.fsencode(course / "submitted" / "s_002" / PS) + b"/aufgabe_\xfc.txt", "wb") as file:

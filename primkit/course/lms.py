@@ -18,7 +18,6 @@ needs Student, ID and Section, and Points Possible may be its second row. nbgrad
 
 from __future__ import annotations
 
-import csv
 import io
 import re
 import zipfile
@@ -27,10 +26,10 @@ from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
 
 from dateutil.parser import parse  # type: ignore[import-untyped]  # it has none
 
+from ..table import as_csv
 from .students import read_table
 
 NAMES = {
@@ -108,7 +107,7 @@ def moodle_files(backs: Iterable[Back], of: float) -> dict[str, bytes]:
         for back in backs
         for file, page in back.pages.items()
     }
-    return {"moodle_grades.csv": _table(MOODLE_HEADER, rows), "moodle_feedback.zip": _archive(pages)}
+    return {"moodle_grades.csv": as_csv(MOODLE_HEADER, rows).encode(), "moodle_feedback.zip": _archive(pages)}
 
 
 def canvas_files(backs: Iterable[Back], of: float, title: str) -> dict[str, bytes]:
@@ -121,18 +120,12 @@ def canvas_files(backs: Iterable[Back], of: float, title: str) -> dict[str, byte
         for back in backs
         for file, page in back.pages.items()
     }
-    table = _table(("Student", "ID", "Section", title), rows)
-    return {"canvas_grades.csv": table, "canvas_feedback.zip": _archive(pages)}
+    table = as_csv(("Student", "ID", "Section", title), rows)
+    return {"canvas_grades.csv": table.encode(), "canvas_feedback.zip": _archive(pages)}
 
 
 def _points(back: Back) -> str:
     return "" if back.points is None else f"{round(back.points, 2):g}"
-
-
-def _table(header: Iterable[Any], rows: Iterable[Iterable[Any]]) -> bytes:
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\r\n").writerows([header, *rows])
-    return text.getvalue().encode()
 
 
 def _archive(files: Mapping[str, bytes]) -> bytes:

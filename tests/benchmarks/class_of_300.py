@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tests.classes import PS, SETTINGS, hand_in
+from tests.classes import PS, SETTINGS, hand_in, roster
 from tests.submissions import ProblemSet
 from tests.test_class import killed_after
 from tests.test_teaching import table
@@ -33,10 +33,9 @@ def main(number, folder):
     settings = config.read_text("utf-8").replace("timeout = 60", "timeout = 20")
     config.write_text(settings.replace("CarefulExecute.seconds = 5", "CarefulExecute.seconds = 2"), "utf-8")
     (course / "course.toml").write_text(SETTINGS)
+    (course / "students.csv").write_bytes(roster(number).encode("utf-16"))
     told(course, "release", PS)
-    rows, class_ = hand_in(Path(folder), ProblemSet(course, PS), np.random.default_rng(300), number)
-    (course / "students.csv").write_bytes(rows.encode("utf-16"))
-    told(course, "release", PS)
+    class_ = hand_in(Path(folder), ProblemSet(course, PS), np.random.default_rng(300), number)
     start, seconds = time.monotonic(), used()
     said = told(course, "collect", PS, *(str(Path(folder, name)) for name in DOWNLOADS))
     print(f"placed in {time.monotonic() - start:.0f} s, {used() - seconds:.0f} s of processor time", flush=True)
