@@ -68,8 +68,8 @@ def scoring() -> Explorer:
         settings={
             "the paper's weights": {},
             "within 1 mm": {"tolerance": 1.0, "noise": 5},
-            "only the shape counts": {"shape": 1.0, "noise": 5, "board": "4-01"},
-            "only dimensions count": {"shape": 0.0, "center": 0.0, "tolerance": 1.0, "noise": 10, "board": "4-10"},
+            "only the shape counts": {"shape": 1.0, "noise": 5},
+            "only dimensions count": {"shape": 0.0, "center": 0.0, "tolerance": 1.0, "noise": 10},
         },
         diagram=draw_diagram,
     )

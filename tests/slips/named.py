@@ -5,7 +5,7 @@ In:  a half of the slips, and whether the check may read the student's code; whe
 Out: for each slip "named", "missed" or "right".
 
     python -m tests.slips.named [open | "held out"] [unread]
-    python -m tests.slips.named fresh SEED [unread | afar]    # next: "lessons in two halves"
+    python -m tests.slips.named fresh SEED [unread | afar]
 
 Of fresh slips none is taken out by hand: one that passes is run beside the right answer on many inputs, and counts as
 equivalent only where both return the same on all of them.
