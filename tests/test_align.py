@@ -32,8 +32,8 @@ def rms(poses, true):
 
 @pytest.fixture(scope="module")
 def board():
-    seen_on_two_sides = pk.Polygon([(-0.42, -0.4), (-0.28, -0.4), (-0.28, -0.28), (-0.42, -0.28)])
-    return pk.World([*CIRCLES, seen_on_two_sides], walls=True)
+    seen_on_three_sides = pk.Polygon([(0.13, -0.03), (0.19, -0.03), (0.19, 0.03), (0.13, 0.03)])
+    return pk.World([*CIRCLES, seen_on_three_sides], walls=True)
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +78,9 @@ def test_a_drive_with_odometry_gives_the_map(board, told, aligned):
     assert right == [0, 3]
 
 
-def test_one_scan_is_left_where_it_is(board):
+def test_no_scan_and_one_are_left_where_they_are(board):
+    assert pk.align(pk.scan(board, [])).scans.poses.shape == (0, 3)
+    assert "no scans on no landmarks, known to 0.0 mm" in repr(pk.align(pk.scan(board, [])))
     scans = pk.scan(board, (0.25, 0.0, 1.0), rng=0)
     assert np.array_equal(pk.align(scans).scans.poses, scans.poses)
 

@@ -36,7 +36,7 @@ from ..arguments import Floats, as_positive, check_type
 from ..grid import Grid
 from ..lidar import Scans
 from ..pipeline import find_shapes
-from ..robot import increments
+from ..robot import chained, increments
 from ..shapes import Circle
 from ..table import count
 from .pose_graph import Hits, Landmarks, State, pose_covariance, solve, variances
@@ -90,7 +90,7 @@ class Alignment:
         return np.sqrt(np.einsum("pii->pi", self.covariance))
 
     def __repr__(self) -> str:
-        place = 1000 * float(np.median(np.hypot(*self.std[:, :2].T)))
+        place = 1000 * float(np.median(np.hypot(*self.std[:, :2].T))) if len(self.scans) else 0.0
         known = f"{count(len(self.scans), 'scan')} on {count(self.n_landmarks, 'landmark')}, known to {place:.1f} mm"
         return "; ".join([f"Alignment: {known}", *self.open])
 
@@ -127,10 +127,10 @@ def align(scans: Scans, *, resolution: float | None = None) -> Alignment:
         reach = float(np.median(scans.ranges[scans.hits])) if scans.hits.any() else 0.25
         resolution = reach / REACH_CELLS
     unit = 1000 * as_positive(resolution, "resolution")
-    start = scans.poses[:1] if len(scans) else np.zeros((1, 3))
-    local = replace(scans, poses=_seen_from(start, scans.poses) / [unit, unit, 1], ranges=scans.ranges / unit)
-    state, hits, covariance, noise = _placed(local)
-    poses = _seen_from(_seen_from(start, np.zeros((1, 3))), state.poses * [unit, unit, 1])
+    start, n = np.append(scans.poses, np.zeros((1, 3)), axis=0)[:1], len(scans)
+    from_start = replace(scans, poses=chained(np.zeros((1, 3)), increments(scans.poses))[:n])
+    state, hits, covariance, noise = _placed(from_start.scaled(1 / unit))
+    poses = chained(start, increments(state.poses * [unit, unit, 1]))[:n]
     c, s = np.cos(start[0, 2]), np.sin(start[0, 2])
     turned = np.array([(unit * c, -unit * s, 0), (unit * s, unit * c, 0), (0, 0, 1)])
     _, slip, _, turn = np.sqrt(state.variance)
@@ -145,16 +145,10 @@ def align(scans: Scans, *, resolution: float | None = None) -> Alignment:
     )
 
 
-def _seen_from(start: Floats, poses: Floats) -> Floats:
-    """Return poses as seen from the first one, shape (P, 3)."""
-    (x, y), c, s = (poses[:, :2] - start[:, :2]).T, np.cos(start[0, 2]), np.sin(start[0, 2])
-    return np.column_stack([c * x + s * y, c * y - s * x, poses[:, 2] - start[0, 2]])
-
-
 def _placed(scans: Scans) -> tuple[State, Hits, Floats, float]:
     """Return the state after all rounds, the hits on landmarks, the covariance of the poses, the noise."""
     steps = increments(scans.poses)
-    state = State(match_scans(scans), np.zeros(2), _no_landmarks(), np.square(FIRST_STDS))
+    state = State(match_scans(scans), np.zeros(2), landmarks_in(scans[:0]), np.square(FIRST_STDS))
     hits = _hits(scans)
     for _ in range(MOST_ROUNDS):
         before = state.poses
@@ -177,7 +171,7 @@ def clear_landmarks(scans: Scans, state: State, hits: Hits) -> Landmarks:
 
     A map is clear if most of its hits lie on its landmarks.
     """
-    best, most = _no_landmarks(), 0.0
+    best, most = state.landmarks, 0.0
     for n in (len(scans), len(scans) // 2, len(scans) // 4):
         marks, of_them = landmarks_in(scans[:n]), hits[hits.pose < n]
         share = len(associate(replace(state, landmarks=marks), of_them)[0].pose) / max(1, len(of_them.pose))
@@ -195,27 +189,18 @@ def landmarks_in(scans: Scans) -> Landmarks:
     grid.add(points[:: 1 + len(points) // MOST_SEARCHED])
     found = find_shapes(grid, rng=0)
     circles = [(*one.shape.center, one.shape.radius) for one in found if isinstance(one.shape, Circle)]
+    corners = [(one.shape.vertices, one.seen) for one in found if not isinstance(one.shape, Circle)]
     sides = [
-        side
-        for one in found
-        if not isinstance(one.shape, Circle)
-        for side, seen in zip(_sides(one.shape.vertices), one.seen, strict=True)
-        if seen >= SIDE_SEEN
+        (start, end)
+        for ring, seen in corners
+        for start, end, share in zip(ring, np.roll(ring, -1, axis=0), seen, strict=True)
+        if share >= SIDE_SEEN
     ]
-    ends = np.array([*sides, *(np.array([wall.start, wall.end]) for wall in found.walls)]).reshape(-1, 2, 2)
+    ends = np.array([*sides, *((wall.start, wall.end) for wall in found.walls)]).reshape(-1, 2, 2)
     along = ends[:, 1] - ends[:, 0]
     bearing = np.arctan2(-along[:, 0], along[:, 1])
     lines = np.column_stack([bearing, np.cos(bearing) * ends[:, 0, 0] + np.sin(bearing) * ends[:, 0, 1]])
     return Landmarks(lines, np.array(circles).reshape(-1, 3), ends, np.arange(len(ends)) < len(sides))
-
-
-def _sides(vertices: Floats) -> Floats:
-    """Return the ends of a polygon's sides, shape (K, 2, 2)."""
-    return np.stack([vertices, np.roll(vertices, -1, axis=0)], axis=1)
-
-
-def _no_landmarks() -> Landmarks:
-    return Landmarks(np.empty((0, 2)), np.empty((0, 3)), np.empty((0, 2, 2)), np.empty(0, dtype=bool))
 
 
 def _hits(scans: Scans) -> Hits:
