@@ -43,8 +43,8 @@ def slopes(arms: Floats, normals: Floats) -> Floats:
     return np.column_stack([normals, normals[:, 1] * arms[:, 0] - normals[:, 0] * arms[:, 1]])
 
 
-def wall_step(pose: Floats, hits: Floats, normals: Floats, offsets: Floats) -> Floats:
-    """Return the pose after one step, shape (3,); what the walls do not tell stays as it is."""
-    jacobian = slopes(turned(hits, pose[2]), normals)
-    step = np.linalg.lstsq(jacobian, off_walls(pose, hits, normals, offsets), rcond=None)[0]
-    return pose - step.astype(float)
+def wall_step(guess: Floats, hits: Floats, normals: Floats, offsets: Floats) -> Floats:
+    """Return the pose after one step from a guess, shape (3,); what the walls do not tell stays as it is."""
+    jacobian = slopes(turned(hits, guess[2]), normals)
+    step = np.linalg.lstsq(jacobian, off_walls(guess, hits, normals, offsets), rcond=None)[0]
+    return guess - step.astype(float)
