@@ -77,6 +77,12 @@ def likelihood(solid: Solid, beams: Beams) -> float:
     return float(log_likelihoods(hit(solid, beams.origins, beams.directions), beams).sum())
 
 
+def belongs(off: Floats, noise_std: float) -> Floats:
+    """Return how likely what is off by so much, metres, is not from nowhere."""
+    near = (1 - NOWHERE_SHARE) / (np.sqrt(2 * np.pi) * noise_std) * np.exp(-0.5 * (off / noise_std) ** 2)
+    return near / (near + NOWHERE_SHARE * NOWHERE_DENSITY)
+
+
 def linearised(solid: Solid, beams: Beams) -> tuple[Floats, Floats, Floats]:
     """Return for beams of the group their weights, the ranges' excess over t, (N,), and its slopes, (N, numbers)."""
     t = hit(solid, beams.origins, beams.directions)
@@ -85,8 +91,7 @@ def linearised(solid: Solid, beams: Beams) -> tuple[Floats, Floats, Floats]:
     normals, speeds = solid.speeds(o + t[:, None] * d)
     slant = (normals * d).sum(axis=1)
     gap = beams.ranges[met] - t
-    near = (1 - NOWHERE_SHARE) / (np.sqrt(2 * np.pi) * beams.noise_std) * np.exp(-0.5 * (gap / beams.noise_std) ** 2)
-    weights = near / (near + NOWHERE_SHARE * NOWHERE_DENSITY) * (np.abs(slant) > 1 / STEEPEST)
+    weights = belongs(gap, beams.noise_std) * (np.abs(slant) > 1 / STEEPEST)
     return weights, gap, speeds / np.where(slant == 0, np.inf, slant)[:, None]
 
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from ..arguments import Floats
 from ..ransac import run_ransac
-from .along_beam import SOFT, stepped
+from .along_beam import ROUNDS, SOFT, belongs, stepped
 from .consensus import PLANE, SPHERE, cylinders_along
 from .solids import Box, Cylinder, Solid, Sphere, frame_of, turn
 
@@ -45,20 +45,38 @@ def starts(points: Floats, noise_std: float, *, rng: np.random.Generator) -> lis
     return [solid for solid in found if solid is not None]
 
 
-def drawn(solid: Solid, points: Floats, noise_std: float, reaches: tuple[float, ...] = REACHES) -> Solid:
+def drawn(solid: Solid, points: Floats, noise_std: float) -> Solid:
     """Return the solid drawn to the points: least squares across its surface, where far points count less and less."""
-    for reach in reaches:
-        reach = max(reach, 2 * noise_std)
+    for reach in REACHES:
         for _ in range(ROUNDS_EACH):
-            off, (_, speeds) = solid.distance(points), solid.speeds(points)
-            w = 1 / (1 + (off / reach) ** 2) ** 2
-            pulls = speeds.T * w / noise_std**2
-            step = np.linalg.solve(pulls @ speeds + SOFT * np.eye(solid.numbers), pulls @ off)
-            after = stepped(solid, np.asarray(step, dtype=float))
-            if after is None:
-                return solid
-            solid = after
+            w = 1 / (1 + (solid.distance(points) / max(reach, 2 * noise_std)) ** 2) ** 2
+            solid = _nearer(solid, points, w, noise_std)
     return solid
+
+
+def settled(solid: Solid, points: Floats, noise_std: float) -> Solid:
+    """Return the solid of maximum likelihood near this one, of points that err at right angles to its surface.
+
+    For points whose beams nobody knows; where they are known, ``along_beam.refine`` knows more.
+
+    Parameters
+    ----------
+    solid : Sphere, Cylinder or Box, such as a consensus of RANSAC
+    points : array, shape (N, 3), metres
+    noise_std : float, metres
+    """
+    solid = drawn(solid, points, noise_std)
+    for _ in range(ROUNDS):
+        solid = _nearer(solid, points, belongs(solid.distance(points), noise_std), noise_std)
+    return solid
+
+
+def _nearer(solid: Solid, points: Floats, weights: Floats, noise_std: float) -> Solid:
+    """Return the solid after one step of weighted least squares; itself when nothing would be left of it."""
+    speeds = solid.speeds(points)[1]
+    pulls = speeds.T * weights / noise_std**2
+    step = np.linalg.solve(pulls @ speeds + SOFT * np.eye(solid.numbers), pulls @ solid.distance(points))
+    return stepped(solid, np.asarray(step, dtype=float)) or solid
 
 
 def misfit(solid: Solid, points: Floats, reach: float) -> float:

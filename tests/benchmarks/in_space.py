@@ -3,14 +3,17 @@
 python -m tests.benchmarks.in_space rays      # 10^6 rays over 50 scenes
 python -m tests.benchmarks.in_space trials    # trials for 99 %: the formula, and what they took
 python -m tests.benchmarks.in_space quarters  # 1,000 quarter cylinders with 10 % outliers
-python -m tests.benchmarks.in_space peers     # pyransac3d beside find_solids, on the same clouds
+python -m tests.benchmarks.in_space found     # kinds, intervals and time of find_solids, on 100 scenes
 """
 
 import sys
+import time
 
 import numpy as np
 
 from primkit import space
+from primkit.ransac import draw_samples
+from primkit.space.points_alone import solid_through
 from primkit.space.solids import hit
 
 NEAR_EDGE = 1e-7  # m, rad: a ray that a solid so much larger or smaller answers otherwise passes at its edge
@@ -75,5 +78,106 @@ def rays():
     print(f"{cast:,} rays: worst difference {1e3 * worst:.1e} mm; hit or miss differs away from edges: {differing}")
 
 
+SUCCESSES, MOST_DRAWN = 2000, 400_000  # first successes whose 99 % quantile is taken; trials drawn at most
+OFF, STEEP, ON_IT, MOST_OF = 0.1, 0.1, 0.015, 0.8  # of the size; rad; m; share: what counts as found
+
+
+def patch(kind, n, rng):
+    """Points of a solid as a sensor sees it, with 5 mm noise: the half that faces the x axis; and its parameters."""
+    if kind == "plane":
+        points = np.column_stack([rng.uniform(-0.4, 0.4, (n, 2)), np.zeros(n)])
+        true = np.array([0, 0, 1.0, 0])
+    elif kind == "sphere":
+        points = rng.normal(size=(n, 3))
+        points[:, 0] = np.abs(points[:, 0])
+        points *= 0.3 / np.linalg.norm(points, axis=1)[:, None]
+        true = np.array([0, 0, 0, 0.3])
+    else:
+        a = rng.uniform(-np.pi / 2, np.pi / 2, n)
+        points = np.column_stack([0.25 * np.cos(a), 0.25 * np.sin(a), rng.uniform(-0.5, 0.5, n)])
+        true = np.array([0, 0, 0, 0, 0, 1.0, 0.25])
+    return points + rng.normal(0, 0.005, (n, 3)), true
+
+
+def right(kind, model, params, true, own):
+    """Tell which rows of parameters are the solid, as far as a first guess must be."""
+    with np.errstate(invalid="ignore"):
+        if kind == "plane":
+            near = np.abs(params[:, 2]) > np.cos(STEEP)
+        else:
+            near = np.abs(params[:, -1] - true[-1]) < OFF * true[-1]
+        if kind == "cylinder":
+            near &= np.abs(params[:, 5]) > np.cos(STEEP)
+    fine = np.zeros(len(params), dtype=bool)
+    fine[near] = (model.residuals(params[near], own) < ON_IT).mean(axis=1) > MOST_OF
+    return fine
+
+
+def trials():
+    print("kind      share  sample   chance a trial  formula  took (99 %)  ratio  ms a 1,000 trials  formula of w^m")
+    for kind, model in (("plane", space.PLANE), ("sphere", space.SPHERE), ("cylinder", space.CYLINDER)):
+        for share in (0.7, 0.3):
+            rng = np.random.default_rng(0)
+            own, true = patch(kind, 600, rng)
+            strays = rng.uniform(-1, 1, (round(600 / share) - 600, 3))
+            points = np.vstack([own, strays])
+            for k in (None, 10, 30, 100):
+                way = model if k is None else space.with_nearest(points, model, k)
+                found, began = np.zeros(0, dtype=bool), time.process_time()
+                while len(found) < MOST_DRAWN and found.sum() < SUCCESSES:
+                    samples = draw_samples(len(points), way.sample_size, 4000, rng)
+                    params = way.from_samples(points[samples])
+                    found = np.append(found, right(kind, model, params, true, own))
+                spent = 1e6 * (time.process_time() - began) / len(found)
+                name = "plain" if k is None else f"1 + {k}"
+                clean = np.log(0.01) / np.log1p(-(share ** (model.sample_size if k is None else 1)))
+                if found.sum() < 100:
+                    print(
+                        f"{kind:9s} {share:.1f}    {name:8s} {found.sum()} right of {len(found):,} trials; {clean:,.0f}"
+                    )
+                    continue
+                one, other = np.array_split(found, 2)  # the chance from one half, what it took from the other
+                took = np.quantile(np.diff(np.flatnonzero(other), prepend=-1), 0.99)
+                formula = np.log(0.01) / np.log1p(-min(one.mean(), 1 - 1e-9))
+                print(
+                    f"{kind:9s} {share:.1f}    {name:8s} {one.mean():13.5f} {formula:8.0f} {took:12.0f} "
+                    f"{took / formula:6.2f} {spent:18.0f} {clean:15,.0f}"
+                )
+
+
+def quarters(n=1000, noise=0.01):
+    """Quarter cylinders of 1 m radius and 3 m length in any direction: 1,000 points, 10 % outliers in the whole box."""
+    off = []
+    for seed in range(n):
+        rng = np.random.default_rng([17, seed])
+        frame = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        a, r = rng.uniform(0, np.pi / 2, 900), 1 + rng.normal(0, noise, 900)
+        tube = np.column_stack([r * np.cos(a), r * np.sin(a), rng.uniform(0, 3, 900)])
+        points = np.vstack([tube, rng.uniform((-1, -1, 0), (1, 1, 3), (100, 3))]) @ frame
+        found = solid_through(points, space.CYLINDER, noise, rng=rng)
+        off.append((1e3 * abs(found.radius - 1), np.degrees(np.arccos(min(1, abs(found.axis @ frame[2]))))))
+    radius, axis = np.mean(off, axis=0)
+    print(f"{n} quarter cylinders: mean error of the radius {radius:.2f} mm, of the axis {axis:.3f} degrees")
+
+
+def found(n=100):
+    """Scenes as in the tests, but more of them."""
+    from tests.test_space import pairs, seen_scenes
+
+    times, kinds, certain, solids, within, told = [], 0, 0, 0, 0, 0
+    for scene, cloud in seen_scenes(n, 50_000):
+        began = time.process_time()
+        each = space.find_solids(cloud, rng=0)
+        times.append(time.process_time() - began)
+        solids += len(scene.solids)
+        for f, true in pairs(each, scene):
+            kinds, certain = kinds + (f.kind == true.kind), certain + f.certain
+            if f.kind == true.kind != "box":
+                for (low, high), size in zip(f.between.values(), (true.half[0], 2 * true.half[2]), strict=False):
+                    told, within = told + 1, within + (low <= size <= high)
+    print(f"{n} scenes, {solids} solids: kind right {kinds}, certain {certain}; interval holds {within} of {told}")
+    print(f"processor time a scene: median {np.median(times):.3f} s, 95 % below {np.quantile(times, 0.95):.3f} s")
+
+
 if __name__ == "__main__":
-    {"rays": rays}[sys.argv[1]]()
+    {"rays": rays, "trials": trials, "quarters": quarters, "found": found}[sys.argv[1]]()
