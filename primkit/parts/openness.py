@@ -98,8 +98,8 @@ def _same_outline(before: Floats, parts: Sequence[Part], changed: Sequence[Part]
 def settled(parts: Sequence[Part], sample: Sample) -> tuple[list[Part], list[Bools]]:
     """Return the parts with their hidden sides off the outline, and which sizes were found to be open on the way.
 
-    A hidden side may have come to lie at the edge of where it can. So each side is pushed in and out by PUSH, and all is
-    fitted anew: a side that was seen comes back, or the points are missed; what costs nothing and stays is open.
+    A hidden side may have come to lie at the edge of where it can. So each side is pushed in and out by PUSH, and all
+    is fitted anew: a side that was seen comes back, or the points are missed; what costs nothing and stays is open.
     """
     parts, is_open = list(parts), []
     cost = full_cost(parts, sample)
