@@ -25,7 +25,6 @@ from numpy.typing import ArrayLike
 
 from ..arguments import Bools, as_points, as_positive, short
 from ..measure import CELL, Detection, Frame, Other
-from ..robust.evidence import CERTAIN
 from ..robust.scatter import SIGMAS, spread_of
 from ..shapes import Circle, Kind, Polygon, Shape
 from ..table import count
@@ -38,6 +37,7 @@ from .proposals import proposals
 
 LEAST_OUTLINE_POINTS = 30  # an outline of several shapes has a hundred
 NEAR_CELLS, NEAR_SPREADS = 1.5, 2.0  # how far a piece of outline may be off: its own error, and what points scatter
+CLEAR_MARGIN = 15.0  # of the margin: rivals are only those that were proposed, so that 10, very strong, is not enough
 LEAST_ON_IT, MOST_UNSEEN = 0.97, 0.01  # of the points, and m of the outline: else the parts do not explain them
 STYLES_OF_PARTS = ("paper", "free")
 
@@ -73,7 +73,7 @@ class Apart:
     @property
     def certain(self) -> bool:
         """Whether number and kinds are beyond doubt: the parts fit, no rival comes near, and no kind is open."""
-        return self.fits and self.margin >= CERTAIN and not any(self.could_be)
+        return self.fits and self.margin >= CLEAR_MARGIN and not any(self.could_be)
 
     def __repr__(self) -> str:
         kinds = sorted(part.kind for part in self.parts)

@@ -38,7 +38,7 @@ SIZE_STEP, SAME = 0.006, 0.001  # m: sizes that differ by more are different, ou
 MOST_CHANGE = 0.05  # m and rad: numbers change by no more
 SMALL = 1e-3  # what a change of the numbers costs beside one of the outline: the smallest change is taken
 PUSH, WORTH_A_FIT, AS_GOOD, STEPS_AGAIN = 0.012, 150.0, 2.0, 5  # m; costs, and steps of fitting
-ROUGHLY = 0.003  # m between two outlines that may both be a little off
+ROUGHLY = 0.006  # m between two outlines that may both be a little off
 INSIDE = 0.003  # m from the outline: that deep, a stretch of hull is hidden
 
 
@@ -98,36 +98,38 @@ def _same_outline(before: Floats, parts: Sequence[Part], changed: Sequence[Part]
 def settled(parts: Sequence[Part], sample: Sample) -> tuple[list[Part], list[Bools]]:
     """Return the parts with their hidden sides off the outline, and which sizes were found to be open on the way.
 
-    A hidden side may have come to lie at the edge of where it can. Each size is pushed by PUSH, and all is fitted anew:
-    a side that was seen comes back, or the points are missed; what costs nothing and stays is open.
+    A hidden side may have come to lie at the edge of where it can. So each side is pushed in and out by PUSH, and all
+    is fitted anew: a side that was seen comes back, or the points are missed; what costs nothing and stays is open.
     """
     parts, is_open = list(parts), []
     cost = full_cost(parts, sample)
     for i, part in enumerate(parts):
-        slopes = _size_slopes(part)
-        found = np.zeros(len(slopes), dtype=bool)
-        for k in range(len(slopes)):
+        found = np.zeros(len(_size_slopes(part)), dtype=bool)
+        for side in range(max(1, len(part.corners))):
             for push in (-PUSH, PUSH):
-                step = _least_change(parts, i, k, push)
-                tried = [*parts[:i], parts[i].with_numbers(parts[i].x + step), *parts[i + 1 :]]
-                if not tried[i].sound or full_cost(tried, sample) > cost + WORTH_A_FIT:
+                pushed = parts[i].with_numbers(parts[i].x + _push(parts[i], side, push))
+                tried = [*parts[:i], pushed, *parts[i + 1 :]]
+                if not pushed.sound or full_cost(tried, sample) > cost + WORTH_A_FIT:
                     continue
                 tried = fitted(tried, sample, steps=STEPS_AGAIN)
-                away = (_size_slopes(parts[i]) @ (tried[i].x - parts[i].x))[k] / push
-                alike = away > SIZE_STEP / PUSH and _same_outline(outline_of(parts), parts, tried, ROUGHLY)
-                if alike and (new := full_cost(tried, sample)) <= cost + AS_GOOD:
-                    found[k], parts, cost = True, tried, min(cost, new)
+                away = np.abs(_size_slopes(parts[i]) @ (tried[i].x - parts[i].x)) > SIZE_STEP
+                if away.any() and _same_outline(outline_of(parts), parts, tried, ROUGHLY):
+                    new = full_cost(tried, sample)
+                    if new <= cost + AS_GOOD:
+                        found, parts, cost = found | away, tried, min(cost, new)
         is_open.append(found)
     return parts, is_open
 
 
-def _least_change(parts: Sequence[Part], i: int, k: int, step: float) -> Floats:
-    """Return the change of part i's numbers that changes size k by a step and moves what it shows least, shape (n,)."""
-    shown = shown_places(parts[i], [*parts[:i], *parts[i + 1 :]])
-    J, d = parts[i].distance(shown)[1], _size_slopes(parts[i])[k]
-    stiff = J.T @ J + 1e-3 * max(1, len(J)) * np.eye(len(d))
-    soft = np.linalg.solve(stiff, d)
-    return step * soft / (d @ soft)
+def _push(part: Part, side: int, by: float) -> Floats:
+    """Return the change of a part's numbers that moves one side outwards and the others least; of a circle, all."""
+    if part.kind == "circle":
+        return np.array([0.0, 0.0, by])
+    corners = part.corners
+    share = np.array([0.2, 0.5, 0.8])[:, None, None]
+    moves = -part.distance(((1 - share) * corners + share * np.roll(corners, -1, axis=0)).reshape(-1, 2))[1]
+    wanted = np.where(np.arange(3 * len(corners)) % len(corners) == side, by, 0.0)
+    return np.linalg.lstsq(moves, wanted, rcond=1e-6)[0]
 
 
 def may_hide_corner(parts: Sequence[Part], i: int) -> bool:

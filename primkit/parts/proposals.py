@@ -126,18 +126,11 @@ def _stairs(deep: Floats, wide: Floats, near: float) -> Iterator[tuple[float, fl
     if len(deep) == 0:
         return
     order = np.argsort(deep)
-    least = np.minimum.accumulate(wide[order])
+    deep, least = deep[order], np.minimum.accumulate(wide[order])
     steps = np.flatnonzero(np.diff(least, prepend=np.inf) < 0)  # the corners of the staircase
-    depths, widths = np.append(deep[order][steps], LARGEST_PART), np.append(LARGEST_PART, least[steps])
-    # between two steps that are far apart a rectangle has room; a slanted flight has very many low steps
-    room = np.minimum(depths, LARGEST_PART), np.minimum(widths, LARGEST_PART)
-    if len(depths) > STAIRS:
-        lead = np.diff(depths, prepend=0.0) + np.diff(widths[::-1], prepend=0.0)[::-1]
-        chosen = np.sort(np.argsort(-lead, kind="stable")[:STAIRS])
-        room = room[0][chosen], room[1][chosen]
-    for depth, width in zip(*room, strict=True):
-        if depth < LARGEST_PART and width < LARGEST_PART:
-            yield float(depth), float(width)
+    depths, widths = deep[steps], least[steps]
+    most = np.argsort(np.diff(widths) - np.diff(depths), kind="stable")[:STAIRS]  # a slanted flight has many low steps
+    yield from zip(depths[most + 1].tolist(), widths[most].tolist(), strict=True)
 
 
 def _pentagons(a: Piece, b: Piece, places: Floats, near: float) -> Iterator[Part]:
