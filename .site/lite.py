@@ -37,6 +37,7 @@ def main():
         for path in lessons:
             text = json.dumps(with_first_cell(json.loads(path.read_text(encoding="utf-8"))), ensure_ascii=False)
             (stage / "lessons" / path.name).write_text(text, encoding="utf-8")
+        shutil.copytree(ROOT / "notebooks" / "recordings", stage / "lessons" / "recordings")
         command = [sys.executable, "-m", "jupyterlite_core", "build", "--lite-dir", folder, "--output-dir", str(out)]
         command += ["--contents", str(stage / "lessons"), "--piplite-wheels", str(wheel)]
         subprocess.run(command, check=True, cwd=folder)
