@@ -2,6 +2,7 @@
 
 import pickle
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -75,6 +76,18 @@ def test_find_shapes_finds_the_same_as_the_thorough_way(seed, noise_std):
     assert len(found) == len(thorough)
     for ours, theirs in zip(found, thorough, strict=True):
         assert_as_good(ours, theirs)
+
+
+def test_two_sides_at_right_angles_are_a_rectangle_s():
+    """Not a triangle's, whose third side nobody has seen: it has one number more to explain as much."""
+    for seed in range(5):
+        width, height = np.random.default_rng(seed).uniform(0.1, 0.3, 2)
+        corner = np.array([(width, 0.0), (0.0, 0.0), (0.0, height)])
+        sides = [np.linspace(a, b, 150) for a, b in pairwise(corner)]
+        [one] = pk.find_shapes(np.unique((np.vstack(sides) // 0.001 + 0.5) * 0.001, axis=0), rng=0)
+        assert one.kind == "rectangle"
+        assert one.margin > 0
+        assert not one.certain
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -490,5 +490,5 @@ def test_r17_without_playwright_the_browser_s_tests_are_skipped_with_a_word():
     env = {name: value for name, value in os.environ.items() if name != "PRIMKIT_BROWSER"}
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=env, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert re.search(r"1 passed, 5 skipped, \d+ deselected", done.stdout)
+    assert re.search(r"1 passed, [1-9]\d* skipped, \d+ deselected", done.stdout)
     assert "the lessons are tried in a browser: " in done.stdout
