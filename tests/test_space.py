@@ -241,3 +241,43 @@ def test_a_wrong_argument_is_refused_in_one_sentence(call, message):
 
 def test_directions_are_unit_vectors():
     assert np.allclose(np.linalg.norm(beams(np.linspace(-1, 1, 5), 7), axis=2), 1, atol=UNIT)
+
+
+def test_what_was_found_is_written_and_read_back():
+    (_, cloud), *_ = seen_scenes(1, 100)
+    found = space.find_solids(cloud, rng=0)
+    back = space.from_json(space.as_json(found)).solids
+    assert space.as_json(back) == space.as_json(f.solid for f in found)
+    assert all(f.center.tolist() == b.center.tolist() for f, b in zip((f.solid for f in found), back, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("{", "solids must be valid JSON, got '{'"),
+        ("[]", 'solids must have "format": "primkit solids", "version": 1, got []'),
+        (
+            space.as_json([space.Sphere((0, 0, 0), 1)]).replace("1.0", "-1"),
+            "solid 0: radius must be a finite number > 0, got -1",
+        ),
+    ],
+)
+def test_a_text_that_tells_of_no_solids_is_refused(text, message):
+    with pytest.raises(ValueError, match="^" + re.escape(message)):
+        space.from_json(text)
+
+
+def test_a_picture_shows_each_solid_and_no_picture_is_empty():
+    assert "3 solids and no points" in space.view(SOLIDS)
+    assert "no solids and 2 points" in space.view((), [(0, 0, 0), (1, 1, 1)], azimuth=1.0, elevation=0.2)
+
+
+def test_a_quarter_of_a_cylinder_is_found_among_outliers():
+    rng = np.random.default_rng(3)
+    off = []
+    for seed in range(5):
+        angle, radius = rng.uniform(0, np.pi / 2, 900), 1 + rng.normal(0, 0.01, 900)
+        tube = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), rng.uniform(0, 3, 900)])
+        points = np.vstack([tube, rng.uniform((-1, -1, 0), (1, 1, 3), (100, 3))])
+        off.append(space.solid_through(points, space.CYLINDER, 0.01, rng=seed).radius - 1)
+    assert np.abs(off).mean() < 0.006  # the limit is 0.0027; with the outliers on the far side it was 0.008 and more

@@ -23,7 +23,7 @@ from ..table import count
 from ..themed import themed
 from .solids import Cylinder, Solid, Sphere
 
-WIDTH, RIM = 420, 12  # px
+VIEW_WIDTH, VIEW_RIM = 420, 12  # px
 SOLID_COLORS = {"sphere": BLUE, "cylinder": VERMILION, "box": GREEN}
 ROUND = np.linspace(0, 2 * np.pi, 49)
 MOST_DOTS = 4000
@@ -47,11 +47,13 @@ def view(solids: Sequence[Solid] = (), points: ArrayLike = (), *, azimuth: float
     nets = [(solid, [line @ flat for line in net(solid)]) for solid in solids]
     every = np.vstack([*(line for _, lines in nets for line in lines), dots @ flat, np.zeros((1, 2))])
     low, high = every.min(axis=0), every.max(axis=0)
-    scale = (WIDTH - 2 * RIM) / max(float((high - low).max()), 1e-9)
+    scale = (VIEW_WIDTH - 2 * VIEW_RIM) / max(float((high - low).max()), 1e-9)
 
     def pixels(line: Floats) -> str:
         x, y = (scale * (line - low)).T
-        return " ".join(f"{RIM + u:.1f},{RIM + v:.1f}" for u, v in zip(x, scale * (high - low)[1] - y, strict=True))
+        return " ".join(
+            f"{VIEW_RIM + u:.1f},{VIEW_RIM + v:.1f}" for u, v in zip(x, scale * (high - low)[1] - y, strict=True)
+        )
 
     parts = [
         f'<polyline points="{pixels(line)}" fill="none" stroke="{SOLID_COLORS[solid.kind]}" stroke-opacity="0.6"/>'
@@ -60,8 +62,8 @@ def view(solids: Sequence[Solid] = (), points: ArrayLike = (), *, azimuth: float
     ]
     spots = "".join(f"M{place}h0" for place in pixels(dots @ flat).split()) if len(dots) else ""
     parts += [f'<path d="{spots}" stroke="{INK}" stroke-width="1.5" stroke-linecap="round"/>'] * bool(spots)
-    height = round(2 * RIM + scale * float((high - low)[1]))
-    svg = f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{height}" style="background:#fff">'
+    height = round(2 * VIEW_RIM + scale * float((high - low)[1]))
+    svg = f'<svg xmlns="http://www.w3.org/2000/svg" width="{VIEW_WIDTH}" height="{height}" style="background:#fff">'
     return themed(svg + "".join(parts) + "</svg>", f"{count(len(solids), 'solid')} and {count(len(dots), 'point')}")
 
 
