@@ -129,7 +129,7 @@ def _push(part: Part, side: int, by: float) -> Floats:
     share = np.array([0.2, 0.5, 0.8])[:, None, None]
     moves = -part.distance(((1 - share) * corners + share * np.roll(corners, -1, axis=0)).reshape(-1, 2))[1]
     wanted = np.where(np.arange(3 * len(corners)) % len(corners) == side, by, 0.0)
-    return np.linalg.lstsq(moves, wanted, rcond=1e-6)[0]
+    return np.linalg.lstsq(moves, wanted, rcond=1e-6)[0].astype(float)
 
 
 def may_hide_corner(parts: Sequence[Part], i: int) -> bool:
