@@ -63,7 +63,8 @@ def as_mathml(visitor, node):
     from docutils import nodes
 
     display = "inline" if isinstance(node, nodes.math) else "block"
-    visitor.body.append(convert(node.astext(), display=display))
+    focus = {"inline": "", "block": ' tabindex="0"'}[display]  # one that is too wide is scrolled, also by keys
+    visitor.body.append(convert(node.astext(), display=display).replace("<math", f"<math{focus}", 1))
     raise nodes.SkipNode
 
 

@@ -1,7 +1,6 @@
 """The site's one script: a page from a folder, without network: sliders move, predictions come back, quizzes mark."""
 
 import json
-import time
 from dataclasses import asdict
 from html import escape
 
@@ -47,18 +46,15 @@ def page(browser, file):
     context.close()
 
 
-def moved_after(page, file):
-    """Open the page, move its first slider by a key, and return how many seconds that took."""
-    start = time.perf_counter()
-    page.goto(file.as_uri())
+def test_a_slider_moves_by_the_keyboard_soon_after_the_page_is_opened(page):
+    """In processor time of the page's process, which is the same on a busy machine."""
     before = page.locator(".picture > div").inner_html()
     page.locator("input[type=range][id^=primkit]").first.press("ArrowRight")
     page.wait_for_function("before => document.querySelector('.picture > div').innerHTML !== before", arg=before)
-    return time.perf_counter() - start
-
-
-def test_a_slider_moves_by_the_keyboard_soon_after_the_page_is_opened(page, file):
-    assert min(moved_after(page, file) for _ in range(3)) < SECONDS  # the best, for a machine may be busy
+    clock = page.context.new_cdp_session(page)
+    clock.send("Performance.enable")
+    told = {one["name"]: one["value"] for one in clock.send("Performance.getMetrics")["metrics"]}
+    assert 0 < told["ProcessTime"] < SECONDS
     beams = page.locator(".controls output").first.inner_text()
     shown = pk.widgets.rays().draw(beams=int(beams))
     parsed = "svg => { const d = document.createElement('div'); d.innerHTML = svg; return d.innerHTML }"
