@@ -41,7 +41,7 @@ from .scatter import NOWHERE, SIGMAS
 Explain = Callable[[Floats], Choice]
 
 # At most so many points are explained, and each try counts as so many more: about two seconds' work.
-MOST_WORK, WORK_OF_A_TRY = 100_000, 500
+MOST_WORK, WORK_OF_A_TRY = 100_000, 250
 
 MOST_ACROSS = 0.45  # m: the paper's largest rectangle is 0.424 m from corner to corner; wider pieces are of two shapes
 HULL_SPREADS, HULL_CELLS = 6.0, 0.002  # the hull runs along the outermost points: others lie up to so much inside [m]
