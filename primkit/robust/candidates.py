@@ -190,15 +190,15 @@ class Ways:
         """Return the ways that may win, each with what it costs and its fit; all ways if that is asked.
 
         One that costs far more than it could began badly, and begins once more; but not where only what chance gives
-        to so many sides more would make it win. At right angles four sides are no freer than three.
+        to so many sides more would make it win: four at right angles are no freer than three.
         """
         fits: dict[Way, tuple[float, Figure]] = {}
         best, winner = np.inf, 0
         for again in (False, True):
             for way in sorted(self.least, key=self.least.__getitem__):
-                more_sides = 0 if way[1] else max(way[0] - winner, 0)
-                least = best - CHANCE * more_sides if again else best + CERTAIN
-                if KIND_OF[way] not in kinds or (self.least[way] > least and not thorough):
+                chance = 0.0 if way[1] else CHANCE * max(way[0] - winner, 0)
+                may_win = self.least[way] <= (best - chance if again else best + CERTAIN)
+                if KIND_OF[way] not in kinds or not (may_win or thorough):
                     continue
                 cost, figure = self.fitted(way, again=again)
                 if figure is not None:
