@@ -56,6 +56,7 @@ results = {
     "random_world": [world, pk.random_world(5, style="free", rng=3)],
     "scan": scans,
     "scan_blocks": list(pk.scan_blocks(world, scans.poses, noisy, size=30, rng=2)),
+    "look": pk.look(world, scans.poses, rng=16).pixels,
     "segment": pk.segment(points, rng=4),
     "kmeans": pk.kmeans(points, 3, rng=4),
     "count_by_silhouette": pk.count_by_silhouette(points, rng=4),

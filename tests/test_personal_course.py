@@ -39,7 +39,7 @@ RADIUS = Task("radius", [Part("the circle's radius", 3, CHECK)])
 LOOKS = """\
 from pathlib import Path
 import primkit as pk
-from primkit.course import DEMONSTRATION
+from primkit.course.personal import DEMONSTRATION
 
 print(pk.load_scans("my_scans.npz").ranges.shape)"""
 

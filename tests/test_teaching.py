@@ -390,7 +390,9 @@ def test_nothing_is_written_over_a_course(course):
 def test_without_the_project_s_folder_one_sentence_says_where_to_get_it(tmp_path, capsys):
     words = ["teach", "new-course", str(tmp_path / "course"), "--assignments", str(tmp_path / "nowhere")]
     assert main(words) == 2
-    assert "an installed wheel holds none; download the project's folder" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert "there are no assignments in" in told
+    assert "say --assignments teachers.zip" in told
     assert not (tmp_path / "course").exists()
 
 

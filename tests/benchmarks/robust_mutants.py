@@ -172,7 +172,7 @@ MUTANTS = (
     Mutant(
         "an outline that stops being sound is given up",
         "robust/refine.py",
-        "if not sound(refined).all():",
+        "if not sound(steps[-1]).all():",
         "if False:",
         REFINE,
     ),
@@ -180,7 +180,7 @@ MUTANTS = (
     Mutant(
         "strays are left out of the first fit",
         "robust/candidates.py",
-        "kept = kept[in_company(kept, spread) if look == 0 else on_it]",
+        "kept = kept[on_it if near.all() else near]",
         "return",
         CUTS,
     ),
