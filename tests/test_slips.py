@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import primkit as pk
+from primkit.checks import answer as answers
 from primkit.checks import slips
 from primkit.course.grading.workers import SLIPS_SECONDS, Remote
 from tests.slips import make, named, right
@@ -146,7 +147,8 @@ def test_a_slip_is_told_with_its_line(task, source, line, words):
     assert f" at line {line}, `" in answer.says, answer
 
 
-def test_two_slips_at_once_are_told_one_after_the_other():
+def test_two_slips_at_once_are_told_one_after_the_other(monkeypatch):
+    monkeypatch.setattr(answers, "SEARCH_SECONDS", 60.0)  # two searches, which may take long where coverage is counted
     two = SEGMENT.replace("t >= 0", "t <= 0").replace("if cross == 0", "if cross <= 0")
     says = CHECKS["ray_segment"][0](written(two)).says
     first, then = re.search(r"Look at (.*)\. \d+ of the \d+ come from there\. Then look at (.*)\.", says).groups()
