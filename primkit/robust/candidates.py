@@ -219,8 +219,7 @@ class Ways:
     def fitted(self, way: Way, *, again: bool) -> tuple[float, Figure | None]:
         """Return what the fit costs, and the fit; None where there is none.
 
-        Again it begins from one side more than the best outline that has one side less; at right angles, from frames
-        around the points.
+        Again it begins from one side more than the best outline with one less; at right angles, from frames around all.
         """
         k, square = way
         starts = outlines_with(self.cuts, self.spans, k) if k > 1 else None

@@ -152,8 +152,8 @@ class Choice:
         """Whether what it is, is beyond doubt.
 
         It is ahead of all rivals, and of itself with bends; nearly all points lie on it, none deep inside; nearly all
-        of it was seen, each side by points of its own; it is so large that its kind can show, and no two shapes that
-        touch would look the same.
+        of it was seen, each side by points of its own; it is so large that its kind can show, and no cut between two
+        corners that bend inwards leaves two shapes with names.
         """
         best = self.ranked[0] if self.ranked else None
         if best is None or best.shape is None:
