@@ -57,6 +57,8 @@ def drive(noise, counts):
     """Drive; print a line for each number of steps, with the 95th percentile as one more number."""
     import resource  # Windows has none
 
+    import sklearn.cluster  # noqa: F401  # a look loads it at the first group that only K-Means parts, early or late
+
     state = DriveState(pk.random_world(4, rng=7), pk.Lidar(noise_std=noise), executor=Beside())
     hand, stopped, taken, before = wandering(counts[-1]), None, np.full(counts[-1], np.nan), 0
     for number in range(1, counts[-1] + 1):
