@@ -380,7 +380,7 @@ def test_a_killed_study_continues_and_leaves_nobody_behind(tmp_path, jobs):
         process.kill()  # SIGKILL: no chance to tidy up
         process.wait()
     if sys.platform != "win32":
-        assert psutil.wait_procs(workers, timeout=20)[1] == []
+        assert psutil.wait_procs(workers, timeout=120)[1] == []  # far below the five minutes, on a busy machine too
     before = journal.read_bytes()
     before = before[: before.rfind(b"\n") + 1]
     assert before.count(b"\n") >= 2

@@ -173,17 +173,17 @@ class CarefulExecute(OwnKernel):
     def _run(self, cell: Any, resources: Any, index: int) -> tuple[str, str] | None:
         """Run a cell; return the name of what went wrong, and a sentence, when its kernel is lost."""
         self.killed, self.letters, self.size = "", 0, 0
+        lost = None
         try:
             super().preprocess_cell(cell, resources, index)
         except DeadKernelError:
-            if self.killed:
-                return "MemoryError", self.killed
-            return "KernelDied", "this cell ended Python; the other cells run without it"
+            lost = "KernelDied", "this cell ended Python; the other cells run without it"
         except (CellTimeoutError, RuntimeError, TimeoutError):
-            return "CellTimeoutError", f"took longer than {self.timeout} s, and could only be ended with its kernel"
+            lost = "CellTimeoutError", f"took longer than {self.timeout} s, and could only be ended with its kernel"
         except Exception as error:  # of nbclient's, over messages that are none
-            return "KernelDied", f"this cell has changed how its kernel speaks ({type(error).__name__}): it was ended"
-        return None
+            lost = "KernelDied", f"this cell has changed how its kernel speaks ({type(error).__name__}): it was ended"
+        # A kernel is interrupted before it is ended: the cell may have had time to answer as if nothing were lost.
+        return ("MemoryError", self.killed) if self.killed else lost
 
     def _leave_twin(self, index: int) -> None:
         """Let the kernel leave a twin of itself, as it is now, to be asked by the judge in the end."""

@@ -6,7 +6,6 @@ Shapes are looked for in a thread beside the drive, as in the scene. A step has 
 leave half of it free.
 """
 
-import gc
 import subprocess
 import sys
 import time
@@ -45,12 +44,12 @@ def wandering(n_steps, rng=0):
 def long_drive(noise, *counts):
     """Drive in a process of its own, at full speed.
 
-    For each of these numbers of steps: how many cells there are; the peak of memory; the blocks that Python holds; and
-    the seconds of the processor that a step takes, as the median of those since the number before.
+    For each of these numbers of steps: how many cells there are; the peak of memory; and the seconds of the processor
+    that a step takes, as the median of those since the number before.
     """
     command = [sys.executable, "-m", "tests.benchmarks.long_drive", str(noise), *map(str, counts)]
     done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=True)
-    return [tuple(map(float, line.split()[:4])) for line in done.stdout.splitlines()]
+    return [tuple(map(float, line.split()[:3])) for line in done.stdout.splitlines()]
 
 
 def drive(noise, counts):
@@ -70,9 +69,8 @@ def drive(noise, counts):
         if number in counts:
             peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
             state.finish()
-            gc.collect()
             steps, before = taken[before:number], number
-            print(len(state.grid), peak, sys.getallocatedblocks(), np.median(steps), np.percentile(steps, 95))
+            print(len(state.grid), peak, np.median(steps), np.percentile(steps, 95))
     state.close()
 
 
@@ -83,11 +81,11 @@ def main():
         command = [sys.executable, "-m", "tests.benchmarks.long_drive", str(noise), *map(str, COUNTS)]
         done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=True)
         for count, line in zip(COUNTS, done.stdout.splitlines(), strict=True):
-            cells, peak, blocks, median, most = map(float, line.split())
+            cells, peak, median, most = map(float, line.split())
             free &= most <= STEP
             print(
                 f"noise {1000 * noise:g} mm, {count:4d} steps: {cells:5.0f} cells, peak {peak / 1024:.0f} MB, "
-                f"{blocks:.0f} blocks, a step {1000 * median:.1f} ms, 95 of 100 below {1000 * most:.1f} ms"
+                f"a step {1000 * median:.1f} ms, 95 of 100 below {1000 * most:.1f} ms"
             )
     return free
 
