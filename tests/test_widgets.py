@@ -269,6 +269,13 @@ def test_a_slider_has_the_diagram_of_its_lesson(name):
     diagram = SLIDERS[name]().diagram()
     assert repr(diagram).startswith("Diagram: ")
     assert elements(diagram.svg)[:3] == ["svg", "title", "desc"]
+    assert ("[m]" in diagram.svg) == (name == "cells")  # an idea needs no axes; that one is about coordinates
+
+
+def test_an_arrow_ends_where_it_points():
+    frame = Frame((0.0, 1.0), (0.0, 1.0), width=175, height=175)  # 100 px to each side
+    shaft, head = re.findall(r'd="([^"]*)"', frame.arrow((0, 0), (1, 0), width=2))
+    assert (shaft, head) == ("M60 130L148 130", "M160 130L148 134.8L148 125.2Z")
 
 
 def test_a_diagram_must_have_been_given():
