@@ -41,7 +41,7 @@ def places(explorer):
 def star(explorer):
     """Return the pictures of a slider by the values of its controls."""
     values = {tuple(each[control.name] for control in explorer.controls): each for each in places(explorer)}
-    return {key: explorer.draw(**each) for key, each in values.items()}
+    return {key: "".join(explorer.pictures(**each)) for key, each in values.items()}
 
 
 def told(control, pictures, place):
@@ -73,6 +73,6 @@ def as_html(explorer):
     }
     return (
         f'<div class="primkit-states" data-about="{escape(json.dumps(about))}">'
-        f'<div class="picture">{in_theme(explorer.draw())}</div>'
+        f'<div class="picture">{in_theme("".join(explorer.pictures()))}</div>'
         f'<script type="text/plain">{packed([[*key, svg] for key, svg in pictures.items()])}</script></div>'
     )

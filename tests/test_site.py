@@ -36,7 +36,7 @@ def test_a_stored_picture_is_the_live_one_to_the_last_byte(make):
     assert all(setting in values for setting in explorer.settings.values())
     for chosen in values[:: len(values) // (SAMPLE - 1)]:
         explorer.set(**chosen)
-        assert explorer._image.value == in_theme(explorer.draw(**chosen))
+        assert [image.value for image in explorer._images] == [in_theme(svg) for svg in explorer.pictures(**chosen)]
         assert explorer.failure is None
 
 

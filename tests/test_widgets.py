@@ -1,5 +1,6 @@
 """Sliders: each lesson's picture at every corner of its box, the panel in a notebook, and the pictures' own text."""
 
+import itertools
 import re
 import time
 from html import escape
@@ -21,6 +22,7 @@ from primkit.widgets.drawing import (
     side_by_side,
     square_frame,
 )
+from primkit.widgets.scoring import SCORED_MAPS, n_right, report_of, weighted
 from primkit.widgets.slider import Choice, Explorer, Slider, explore
 from primkit.widgets.svg import sentence, size_of, what_it_says
 from tests.helpers import svg_in, words_in
@@ -55,10 +57,11 @@ def is_sound(svg):
 @pytest.mark.parametrize(("name", "corner"), CORNERS)
 def test_a_slider_draws_at_every_corner(name, corner):
     slider = SLIDERS[name]()
-    svg = slider.draw(**corner)
-    is_sound(svg)
-    assert size_of(svg) == size_of(slider.draw())
-    assert slider.draw(**corner) == svg
+    drawn = slider.pictures(**corner)
+    for svg, first in zip(drawn, slider.pictures(), strict=True):
+        is_sound(svg)
+        assert size_of(svg) == size_of(first)
+    assert slider.pictures(**corner) == drawn
 
 
 @pytest.mark.parametrize("name", SLIDERS)
@@ -77,7 +80,7 @@ def test_a_slider_is_quick_enough(name):
 
     def seconds(corner):
         start = time.process_time()
-        slider.draw(**corner)
+        slider.pictures(**corner)
         return time.process_time() - start
 
     slowest = max(slider.corners(), key=seconds)
@@ -116,7 +119,8 @@ def test_the_panel_has_a_named_control_for_each_value_and_a_button_for_each_sett
     import ipywidgets
 
     slider = SLIDERS[name]()
-    *controls, row, image, readout = parts(slider)
+    *controls, row = parts(slider)[: len(slider.controls) + 1]
+    *images, readout = parts(slider)[len(slider.controls) + 1 :]
     assert [control.value for control in controls] == list(slider.start.values())
     assert all(control.description for control in controls)
     assert [button.description for button in row.children] == list(slider.settings)
@@ -124,15 +128,15 @@ def test_the_panel_has_a_named_control_for_each_value_and_a_button_for_each_sett
     row.children[-1].click()
     last = list(slider.settings.values())[-1]
     assert [control.value for control in controls] == pytest.approx(list(last.values()))
-    assert image.value == in_theme(slider.draw(**last))
+    assert [image.value for image in images] == [in_theme(svg) for svg in slider.pictures(**last)]
     assert 'aria-live="polite"' in readout.value
     assert slider.failure is None
 
 
 def parts(slider):
-    """The controls of a panel, the row of its buttons, its picture and what that says."""
-    (controls, image), readout = slider.panel.children[0].children, slider.panel.children[1]
-    return [*controls.children, image, readout]
+    """The controls of a panel, the row of its buttons, its pictures and what they say."""
+    (controls, *images), readout = slider.panel.children[0].children, slider.panel.children[1]
+    return [*controls.children, *images, readout]
 
 
 def ring(radius, words="a"):
@@ -185,6 +189,29 @@ def test_an_error_is_a_sentence_in_the_picture_s_place_and_is_kept():
     radius.value = 0.3
     assert slider.failure is None
     assert image.value == in_theme(ring(0.3))
+
+
+def test_a_second_picture_moves_along_and_its_words_are_told():
+    slider = explore(ring, *CONTROLS, settings={"large": {"radius": 0.3}}, beside=lambda **v: ring(0.1, v["words"]))
+    radius, words, _row, image, beside, readout = parts(slider)
+    radius.value, words.value = 0.3, "b"
+    assert [image.value, beside.value] == [in_theme(ring(0.3, "b")), in_theme(ring(0.1, "b"))]
+    assert ">0.3. 0.1.<" in readout.value
+    assert what_it_says(slider.twin().svg) == "large: 0.3. large: 0.1."
+    radius.value = 0.4
+    assert what_it_says(image.value) == what_it_says(beside.value)
+    assert readout.value.count("at most 0.35 m") == 1
+
+
+def test_the_map_counts_what_the_score_counts():
+    """The share of right values, each with its part's weight, is the score at the same tolerance."""
+    tolerances = np.array([0.0, 0.001, 0.005])
+    for board, noise in itertools.product(SCORED_MAPS, (0, 10)):
+        report = report_of("PAPER", board, noise)
+        true = [*(match.true for match in report.matches), *report.missed]
+        of = len(true) + len(report.false_alarms), 2 * len(true), sum(len(shape.dimensions) for shape in true)
+        told = sum(n * weighted(report, tolerances, one) for n, one in zip(of, np.eye(3), strict=True))
+        assert [sum(n_right(m, t) for m in report.matches) for t in tolerances] == pytest.approx(told)
 
 
 def test_an_error_reaches_who_calls_draw():
@@ -242,6 +269,13 @@ def test_a_slider_has_the_diagram_of_its_lesson(name):
     diagram = SLIDERS[name]().diagram()
     assert repr(diagram).startswith("Diagram: ")
     assert elements(diagram.svg)[:3] == ["svg", "title", "desc"]
+    assert ("[m]" in diagram.svg) == (name == "cells")  # an idea needs no axes; that one is about coordinates
+
+
+def test_an_arrow_ends_where_it_points():
+    frame = Frame((0.0, 1.0), (0.0, 1.0), width=175, height=175)  # 100 px to each side
+    shaft, head = re.findall(r'd="([^"]*)"', frame.arrow((0, 0), (1, 0), width=2))
+    assert (shaft, head) == ("M60 130L148 130", "M160 130L148 134.8L148 125.2Z")
 
 
 def test_a_diagram_must_have_been_given():

@@ -23,7 +23,7 @@ function slider(root, number) {
   let values = [...about.start];
   let states;
   const stored = () => (states ??= unpacked(root.querySelector("script").textContent));
-  const tell = () => (says.textContent = picture.querySelector("desc")?.textContent ?? "");
+  const tell = () => (says.textContent = [...picture.querySelectorAll("desc")].map((one) => one.textContent).join(" "));
   const shows = about.controls.map((control, place) => knob(control, place));
   const far = (state, wanted) =>
     about.controls.reduce((sum, { choice, values: all }, k) => {

@@ -17,7 +17,7 @@ from ..arguments import Floats
 from ..circles import Method, fit_circle
 from ..palette import BLACK, BLUE, GREY, INK, ORANGE, PALE, PURPLE, VERMILION
 from ..shapes import Circle
-from .drawing import Frame, picture, square_frame
+from .drawing import idea_frame, picture, square_frame
 from .slider import Choice, Explorer, Picture, Slider, explore
 
 XYR = tuple[float, float, float]
@@ -132,7 +132,7 @@ def _millimetres(circle: Circle | None) -> str:
 def draw_diagram() -> Picture:
     """Return the drawing behind Kasa's bias: the same gap makes a ring whose area grows with the circle."""
     gap, small, large = 0.02, 0.05, 0.1
-    frame = Frame((0.0, 0.44), (0.0, 0.26), width=603, height=387)
+    frame = idea_frame((0.0, 0.44), (0.0, 0.26), 603)
     parts, east = [], np.array([1.0, 0.0])
     areas = [np.pi * 1e4 * ((radius + gap) ** 2 - radius**2) for radius in (small, large)]
     for center, radius, area in zip([(0.08, 0.13), (0.3, 0.13)], (small, large), areas, strict=True):

@@ -118,6 +118,15 @@ class Frame:
         moves = "".join(f"M{x:g} {y:g}L{u:g} {v:g}" for (x, y), (u, v) in pairs)
         return path(moves, stroke=color, stroke_width=width, stroke_dasharray=dash)
 
+    def arrow(self, start: ArrayLike, end: ArrayLike, color: str = INK, width: float = 2) -> str:
+        """Draw an arrow from one point to another."""
+        (first,), (last,) = np.array(self.at(start)), np.array(self.at(end))
+        ahead = (last - first) / np.hypot(*(last - first))
+        aside, long = np.array([-ahead[1], ahead[0]]), 6 + 3 * width  # px
+        neck = last - long * ahead
+        shaft = path(through([first, neck]), stroke=color, stroke_width=width)
+        return shaft + path(through([last, neck + 0.4 * long * aside, neck - 0.4 * long * aside]) + "Z", fill=color)
+
     def polyline(self, points: ArrayLike, color: str = BLUE, width: float = 2, dash: str = "") -> str:
         """Draw a line through points, shape (N, 2)."""
         return path(through(self.at(points)), stroke=color, stroke_width=width, stroke_dasharray=dash)
@@ -166,7 +175,9 @@ class Frame:
         return words_at(x + shift[0], y + shift[1], words, color=color, anchor=anchor, size=size, rim=True)
 
     def axes(self) -> str:
-        """Draw the axes with ticks, numbers, names and units."""
+        """Draw the axes with ticks, numbers, names and units; an idea has none."""
+        if not self.x_label:
+            return ""
         (left, bottom), (right, top) = self.at([(self.x[0], self.y[0]), (self.x[1], self.y[1])])
         x_ticks = round_ticks(*self.x) if self.x_ticks is None else self.x_ticks
         y_ticks = round_ticks(*self.y) if self.y_ticks is None else self.y_ticks
@@ -189,6 +200,12 @@ class Frame:
 def board_frame(size: float = 1.0) -> Frame:
     """Return the frame of a board of ``size`` metres, centred on the origin, with the same scale both ways."""
     return square_frame((0.0, 0.0), size)
+
+
+def idea_frame(x: tuple[float, float], y: tuple[float, float], width: int) -> Frame:
+    """Return the frame of a diagram of an idea: the same scale both ways, and no axes."""
+    scale = (width - PAD_LEFT - PAD_RIGHT) / (x[1] - x[0])
+    return Frame(x, y, "", "", width, round(scale * (y[1] - y[0])) + PAD_TOP + PAD_BOTTOM)
 
 
 def square_frame(center: tuple[float, float], size: float) -> Frame:
@@ -236,15 +253,15 @@ def _in_rows(entries: Sequence[str], width: int, top: int) -> tuple[str, int]:
 
 
 def side_by_side(pictures: Sequence[str], captions: Sequence[str], *, says: str = "") -> str:
-    """Return pictures of the same size as small multiples in one SVG, two in a row, with a caption above each.
+    """Return pictures of the same width as small multiples in one SVG, two in a row, with a caption above each.
 
     What their legends explain stands once, below all.
     """
-    width, height = size_of(pictures[0])
+    width, _ = size_of(pictures[0])
     found = [re.findall(ENTRY, svg) for svg in pictures]
-    tall = max((_in_rows(entries, width, 0)[1] for entries in found), default=0)
+    bare = [size_of(svg)[1] - _in_rows(entries, width, 0)[1] for svg, entries in zip(pictures, found, strict=True)]
     columns, rows = min(2, len(pictures)), -(-len(pictures) // 2)
-    step, cells = height - tall + 26, []
+    step, cells = max(bare) + 26, []
     for number, (svg, caption) in enumerate(zip(pictures, captions, strict=True)):
         x, y = number % columns * width, number // columns * step
         cells.append(words_at(x + PAD_LEFT, y + 20, f"{'abcdefghijkl'[number]}) {caption}", size=15, bold=True))

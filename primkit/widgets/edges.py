@@ -25,7 +25,7 @@ from ..robot import teleport_poses
 from ..shapes import Polygon
 from ..table import count
 from ..world import World
-from .drawing import Frame, picture, square_frame
+from .drawing import Frame, idea_frame, picture, square_frame
 from .slider import Explorer, Picture, Slider, explore
 
 RECTANGLE = Polygon([(-0.13, -0.09), (0.13, -0.09), (0.13, 0.09), (-0.13, 0.09)]).moved((0.02, 0.01), 0.3)
@@ -127,7 +127,7 @@ def draw_diagram() -> Picture:
     foot, p = line.offset * n, line.offset * n - 0.16 * u + 0.09 * n
     inliers = foot + np.outer([-0.27, -0.21, 0.05, 0.11, 0.17], u) + np.outer([0.02, -0.03, 0.015, -0.02, 0.03], n)
     on_line, turn = foot + 0.16 * u, np.linspace(0, line.angle, 30)
-    frame = Frame((-0.14, 0.41), (-0.05, 0.35), width=525, height=402)
+    frame = idea_frame((-0.14, 0.41), (-0.05, 0.35), 525)
     svg = picture(
         frame,
         _band(frame, line, t, SKY),
@@ -136,7 +136,7 @@ def draw_diagram() -> Picture:
         frame.segments([(0, 0)], [(0.11, 0)], GREY, 1.5, "5 4"),
         frame.polyline(0.05 * np.column_stack([np.cos(turn), np.sin(turn)]), INK, 1.5),
         frame.segments([(0, 0)], [foot], INK, 1.5, "5 4"),
-        frame.segments([(0, 0)], [0.1 * n], VERMILION, 5),
+        frame.arrow((0, 0), 0.1 * n, VERMILION, 5),
         frame.segments([p], [p - 0.09 * n], ORANGE, 3),
         frame.points([(0, 0)], INK, "square", 8),
         frame.points(inliers, BLUE, size=8),

@@ -17,7 +17,7 @@ from ..palette import BLACK, BLUE, CLUSTER_COLORS, GREY, INK, ORANGE, PALE
 from ..robot import teleport_poses
 from ..shapes import Circle, Polygon
 from ..world import World, random_world
-from .drawing import Frame, board_frame, picture, side_by_side
+from .drawing import Frame, board_frame, idea_frame, picture, side_by_side
 from .slider import Choice, Explorer, Picture, Slider, explore
 
 FOUR_SHAPES, LONG_AND_SMALL, CLOSE_PAIR = "four shapes", "long and small", "3 cm apart"
@@ -220,12 +220,12 @@ def draw_diagram() -> Picture:
 
 def _half(points: Floats, labels: Labels, old: Floats, new: Floats, title: str) -> str:
     """Draw one of the diagram's two halves; in the second one the centres have moved."""
-    frame, moved = Frame((0.0, 1.0), (0.0, 0.8), width=425, height=355), not np.array_equal(old, new)
+    frame, moved = idea_frame((0.0, 1.0), (0.0, 0.8), 425), not np.array_equal(old, new)
     return picture(
         frame,
         "" if moved else frame.segments(points, old[labels], PALE, 2) + _borders(frame, old),
         frame.points(points[labels == 0], ORANGE, "diamond", 10) + frame.points(points[labels == 1], BLUE, "dot", 10),
-        frame.segments(old, new, INK, 2) if moved else "",
+        *(frame.arrow(o, n - 0.02 * (n - o) / np.hypot(*(n - o)), INK) for o, n in zip(old, new, strict=True) if moved),
         frame.points(old, INK, "ring", 12) if moved else "",
         frame.points(new, INK, "square", 12),
         frame.text(new[0], "c₀", shift=(9, -7), size=16),

@@ -26,7 +26,7 @@ from ..robust.scatter import spread_across
 from ..seen import is_seen, seen_shares
 from ..shapes import Circle, Kind, Polygon, Shape
 from ..world import World
-from .drawing import Frame, picture
+from .drawing import Frame, idea_frame, picture
 from .slider import Choice, Explorer, Picture, Slider, explore
 
 FAIR_PRICE, NO_PRICE = "ln N a number", "nothing"
@@ -257,15 +257,14 @@ def draw_diagram() -> Picture:
     normals = np.column_stack([np.cos(angles), np.sin(angles)])
     corner = np.linalg.solve(normals, offsets)
     feet, along = offsets[:, None] * normals, np.column_stack([-normals[:, 1], normals[:, 0]])
-    frame = Frame((-0.12, 0.63), (-0.1, 0.42), width=525, height=389)
-    zero = np.zeros((2, 2))
+    frame = idea_frame((-0.12, 0.63), (-0.1, 0.42), 525)
     svg = picture(
         frame,
         frame.segments(feet - 0.7 * along, feet + 0.7 * along, PALE, 2),
         frame.segments([corner], [corner - 0.32 * along[0]], BLUE, 4),
         frame.segments([corner], [corner + 0.36 * along[1]], ORANGE, 4),
-        frame.segments(zero, feet, GREY, 1.5, "5 4"),
-        frame.segments(zero, 0.12 * normals, VERMILION, 4),
+        frame.segments(np.zeros((2, 2)), feet, GREY, 1.5, "5 4"),
+        *(frame.arrow((0, 0), 0.12 * normal, VERMILION, 4) for normal in normals),
         frame.points([corner], VERMILION, "ring", 14),
         frame.points(feet, GREY, "square", 6),
         frame.points([(0, 0)], INK, size=8),

@@ -21,7 +21,7 @@ from ..lidar import Lidar, Scans, scan
 from ..palette import BLUE, GREY, INK, ORANGE, VERMILION
 from ..table import count
 from ..world import World
-from .drawing import Frame, board_frame, picture, side_by_side, square_frame
+from .drawing import board_frame, idea_frame, picture, side_by_side, square_frame
 from .slider import Choice, Explorer, Picture, Slider, explore
 
 ROOM = World(walls=True)
@@ -132,14 +132,14 @@ def draw_diagram() -> Picture:
     pose, wall, bearing = np.array([0.0, 0.0]), 0.3, np.radians(32)
     arm = 0.27 * np.array([np.cos(bearing), np.sin(bearing)])
     across = 0.09 * np.array([-np.sin(bearing), np.cos(bearing)])
-    frame = Frame((-0.06, 0.42), (-0.08, 0.28), width=555, height=435)
+    frame = idea_frame((-0.06, 0.42), (-0.08, 0.28), 555)
     svg = picture(
         frame,
         frame.segments([(wall, -0.06)], [(wall, 0.27)], INK, 3),
-        frame.segments([(wall, -0.03)], [(wall + 0.08, -0.03)], VERMILION, 4),
+        frame.arrow((wall, -0.03), (wall + 0.08, -0.03), VERMILION, 4),
         frame.segments([pose], [arm], GREY, 1.5, "5 4"),
         frame.segments([arm], [(wall, arm[1])], ORANGE, 3),
-        frame.segments([arm], [arm + across], BLUE, 2.5),
+        frame.arrow(arm, arm + across, BLUE, 2.5),
         frame.points([arm], BLUE, size=9),
         frame.robot([*pose, 0.0], INK, 14),
         frame.text((wall, 0.25), "wall: n · p = d", INK, shift=(8, 0), size=15),

@@ -13,7 +13,7 @@ from ..lidar import Lidar, scan
 from ..palette import BLUE, GREY, INK, ORANGE, PALE, VERMILION
 from ..shapes import Circle, Polygon
 from ..world import World
-from .drawing import Frame, board_frame, picture
+from .drawing import board_frame, idea_frame, picture
 from .slider import Explorer, Picture, Slider, explore
 
 RAYS_BOARD = World(
@@ -85,14 +85,14 @@ def draw_diagram() -> Picture:
     q, u, a, b = np.array([[0.05, 0.05], [0.8, 0.6], [0.19, 0.33], [0.44, 0.08]])
     t, s = np.linalg.solve(np.column_stack([u, a - b]), a - q)  # q + t u = a + s (b - a)
     hit = q + t * u
-    frame = Frame((0.0, 0.55), (0.0, 0.4), width=525, height=402)
+    frame = idea_frame((0.0, 0.55), (0.0, 0.4), 525)
     svg = picture(
         frame,
         frame.segments([q], [q + 0.6 * u], PALE, 1.5, "5 4"),
         frame.segments([a], [b], INK, 4),
         frame.segments([a], [a + s * (b - a)], BLUE, 4),
         frame.segments([q], [hit], ORANGE, 3),
-        frame.segments([q], [q + 0.1 * u], VERMILION, 5),
+        frame.arrow(q, q + 0.1 * u, VERMILION, 5),
         frame.points([hit], VERMILION, "ring", 14),
         frame.points([a, b], INK, "square", 8),
         frame.robot([*q, np.arctan2(u[1], u[0])]),

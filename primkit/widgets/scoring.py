@@ -1,29 +1,29 @@
-"""Scoring: what a result scores, while you move the tolerance and the weights. The slider of lesson 07.
+"""Scoring: what a result scores, and which of its values are right, while you move tolerance and weights: lesson 07.
 
 >>> scoring()
 Slider: tolerance, weight of shape, centre's part of the rest, map, noise
->>> weighted(row_of("ROBUST", "4-03", noise=0), np.array([0.0, 0.01]), (0.4, 0.3, 0.3))  # exactly, and within 1 cm
+>>> weighted(report_of("ROBUST", "4-03", noise=0), np.array([0.0, 0.01]), (0.4, 0.3, 0.3))  # exactly; within 1 cm
 array([0.4, 1. ])
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
 import numpy as np
 
 from ..arguments import ROUNDING, Floats
-from ..evaluation import GATE
+from ..evaluation import GATE, evaluate
 from ..formats import paper_suite
 from ..lidar import Lidar
 from ..palette import BLUE, GREY, INK, PALE, SKY, VERMILION
 from ..pipeline import PAPER, ROBUST
-from ..report import CENTER_WEIGHT, SHAPE_WEIGHT
-from ..study import Experiment, Row, perform
+from ..report import CENTER_WEIGHT, SHAPE_WEIGHT, Match, Report, n_dimensions
+from ..study import Experiment, run
 from ..world import World
-from .drawing import Frame, picture, side_by_side
+from .drawing import Frame, board_frame, idea_frame, picture, side_by_side
 from .slider import Choice, Explorer, Picture, Slider, explore
 
 Weights = tuple[float, float, float]  # of shape, centre and dimensions; their sum is 1
@@ -41,16 +41,17 @@ SCORE_FRAME = Frame(
     "tolerance [mm]",
     "weighted accuracy [-]",
     width=425,
-    height=346,
+    height=379,
     x_ticks=(0, 5, 10, 15, 20),
     y_ticks=(0.0, 0.2, 0.4, 0.6, 0.8, 1.0),
 )
 WEIGHTS_FRAME = Frame((0.0, MOST_TOLERANCE), (0.0, 1.0), width=425, height=75 + 24)  # the bar of weights, below
 WEIGHTS_ROOM = 46  # px
 SCORE_LEGEND = (
-    *(("ROBUST, two-sided", BLUE, "dot"), ("PAPER, two-sided", VERMILION, "square")),
-    ("one-sided (dashed): too small is right", INK, "ring"),
+    *(("ROBUST", BLUE, "dot"), ("PAPER", VERMILION, "square")),
+    ("dashed: too small is right", INK, "ring"),
 )
+FINDINGS_LEGEND = (("true", GREY, "square"), ("found by ROBUST", BLUE, "line"), ("found by PAPER", VERMILION, "line"))
 SCORE_TIE = 1e-9
 LETTER_WIDTH = 6.6  # px: the width of one letter in the bar
 
@@ -72,13 +73,14 @@ def scoring() -> Explorer:
             "only dimensions count": {"shape": 0.0, "center": 0.0, "tolerance": 1.0, "noise": 10},
         },
         diagram=draw_diagram,
+        beside=draw_map,
     )
 
 
 def draw_scores(tolerance: float, shape: float, center: float, board: str, noise: int) -> str:
     """Draw both methods' scores against the tolerance [mm], two-sided and one-sided; noise in mm."""
     weights = (shape, (1 - shape) * center, (1 - shape) * (1 - center))
-    results = {name: row_of(name, board, noise) for name in QUICK_METHODS}
+    results = {name: report_of(name, board, noise) for name in QUICK_METHODS}
     here = np.array([tolerance]) / 1000
     fair, lax = (
         {name: float(weighted(result, here, weights, one_sided=one)[0]) for name, result in results.items()}
@@ -109,11 +111,41 @@ def draw_scores(tolerance: float, shape: float, center: float, board: str, noise
     )
 
 
+def draw_map(tolerance: float, board: str, noise: int, **_weights: float) -> str:
+    """Draw the truth, what both methods found, and at each true shape how many of its values are right."""
+    frame, parts, n = board_frame(), [], {}
+    for (name, (color, _)), width, line in zip(METHOD_SIGNS.items(), (4.0, 1.5), (-3, 12), strict=True):
+        report = report_of(name, board, noise)
+        found = [match.found for match in report.matches] + list(report.false_alarms)
+        counts = [(m.true, n_right(m, tolerance / 1000)) for m in report.matches] + [(s, 0) for s in report.missed]
+        parts += [frame.shape(shape, color, width, fill=0) for shape in found]
+        for true, right in counts:
+            words = f"{right} of {3 + n_dimensions(true)}"
+            parts.append(frame.text(true.centroid, words, color, "middle", (0, line)))
+        n[name] = sum(right for _, right in counts)
+    total = sum(3 + n_dimensions(shape) for shape in _suite()[board].shapes)
+    return picture(
+        frame,
+        *(frame.shape(shape, PALE, width=0, fill=0.5) for shape in _suite()[board].shapes),
+        *parts,
+        legend=FINDINGS_LEGEND,
+        title=f"Right values: ROBUST {n['ROBUST']}, PAPER {n['PAPER']} of {total}",
+        says=f"The map: of {total} values (kind, x, y and dimensions of each shape) ROBUST has {n['ROBUST']} right "
+        f"within {tolerance:g} mm, PAPER {n['PAPER']}.",
+    )
+
+
+def n_right(match: Match, tolerance: float) -> int:
+    """Return how many of a found shape's values are right: the kind, x and y, and the kind's dimensions; metres."""
+    errors = [*match.center_error, *(match.dimension_error or () if match.kind_right else ())]
+    return int(match.kind_right) + int((np.abs(errors) <= tolerance + ROUNDING).sum())
+
+
 @cache
-def row_of(method: str, board: str, noise: int) -> Row:
-    """Return what became of a map of the suite with a method; noise in mm. Found once, then kept."""
-    lidar = Lidar(noise_std=noise / 1000)
-    return perform(Experiment(board, _suite()[board], method, QUICK_METHODS[method], lidar=lidar))
+def report_of(method: str, board: str, noise: int) -> Report:
+    """Return how right a method is on a map of the suite; noise in mm. Found once, then kept."""
+    experiment = Experiment(board, _suite()[board], method, QUICK_METHODS[method], lidar=Lidar(noise_std=noise / 1000))
+    return evaluate(run(experiment).found, experiment.world)
 
 
 @cache
@@ -121,18 +153,21 @@ def _suite() -> dict[str, World]:
     return paper_suite()
 
 
-def weighted(row: Row, tolerance: Floats, weights: Weights, *, one_sided: bool = False) -> Floats:
+def weighted(report: Report, tolerance: Floats, weights: Weights, *, one_sided: bool = False) -> Floats:
     """Return the weighted accuracy at each tolerance, shape (N,), metres.
 
     ``one_sided``: every value that is too small counts as right, as in the published scoring (which rounds as well).
     """
 
-    def share(errors: Iterable[float], n: int) -> Floats:
-        off = np.array(list(errors)) if one_sided else np.abs(list(errors))
+    def share(errors: Sequence[float], n: int) -> Floats:
+        off = np.array(errors) if one_sided else np.abs(errors)
         return (off <= tolerance[:, None] + ROUNDING).sum(axis=1) / n
 
-    center, dimension = share(row.center_errors, 2 * row.n_shapes), share(row.dimension_errors, row.n_dimensions)
-    return weights[0] * row.fair.shape + weights[1] * center + weights[2] * dimension
+    true = [*(match.true for match in report.matches), *report.missed]
+    center = share([e for m in report.matches for e in m.center_error], 2 * len(true))
+    sizes = [e for m in report.matches if m.kind_right for e in m.dimension_error or ()]
+    dimension = share(sizes, sum(map(n_dimensions, true)))
+    return weights[0] * report.shape_accuracy + weights[1] * center + weights[2] * dimension
 
 
 def _two(score: float) -> str:
@@ -175,7 +210,7 @@ TRUE, FOUND = np.array([[(0.0, 0.04), (0.075, 0.04)], [(0.044, 0.009), (0.106, 0
 
 def _pairing(pairs: list[tuple[int, int]], title: str, note: str) -> str:
     """Draw the centres of two true and two found shapes, and which found one stands for which true one."""
-    frame = Frame((-0.03, 0.16), (-0.04, 0.067), width=425, height=272)
+    frame = idea_frame((-0.03, 0.16), (-0.04, 0.067), 425)
     starts, ends = [FOUND[f] for f, _ in pairs], [TRUE[t] for _, t in pairs]
     parts = [frame.segments(starts, ends, BLUE, 3)]
     if len(pairs) == 1:

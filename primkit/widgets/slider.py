@@ -151,7 +151,8 @@ class Explorer:
     """A drawing function with its controls and its named settings; ``explore`` makes one.
 
     ``draw(**values)`` returns the picture as SVG text and raises what the function raises; in the notebook such an
-    error is a sentence in the place of the picture, and is kept as ``failure``.
+    error is a sentence in the place of the picture, and is kept as ``failure``. A second function of the same values,
+    ``beside``, draws a picture of its own: beside the first where there is room, below it on a phone.
     """
 
     def __init__(
@@ -160,15 +161,20 @@ class Explorer:
         controls: Sequence[Control],
         settings: Mapping[str, Mapping[str, Any]] | None = None,
         diagram: Callable[[], Picture] | None = None,
+        beside: Draw | None = None,
     ) -> None:
-        self.function, self.controls, self._diagram = draw, tuple(controls), diagram
+        self.functions, self.controls, self._diagram = [draw, *filter(None, [beside])], tuple(controls), diagram
         self.start = {control.name: control.start for control in self.controls}
         self.settings = {name: self._complete(name, values) for name, values in (settings or {}).items()}
         self.failure: Exception | None = None
 
     def draw(self, **values: Any) -> str:
         """Return the picture for these values, and for the start's where none are given."""
-        return self.function(**(self.start | values))
+        return self.pictures(**values)[0]
+
+    def pictures(self, **values: Any) -> list[str]:
+        """Return all that is drawn for these values: the picture, and the one beside it if there is one."""
+        return [draw(**(self.start | values)) for draw in self.functions]
 
     def corners(self) -> list[dict[str, Any]]:
         """Return the values at every corner of the box that the controls span; of choices, all options."""
@@ -176,10 +182,11 @@ class Explorer:
 
     def twin(self) -> Twin:
         """Return the named settings side by side as one picture, for where nothing can be moved."""
-        pictures = [self.draw(**values) for values in self.settings.values()]
+        pictures = {name: self.pictures(**values) for name, values in self.settings.items()}
         if not pictures:
             raise ValueError("a twin needs named settings, got none")
-        return Twin(side_by_side(pictures, list(self.settings)), f"{self!r}, its named settings")
+        captions, drawn = zip(*((name, svg) for name, some in pictures.items() for svg in some), strict=True)
+        return Twin(side_by_side(drawn, captions), f"{self!r}, its named settings")
 
     def diagram(self) -> Picture:
         """Return the drawing behind the lesson's formula."""
@@ -194,11 +201,11 @@ class Explorer:
 
         from .panel import attended
 
-        svg = self.draw()  # at the start an error is not caught: a lesson that cannot begin should say so
-        width, _ = size_of(svg)
+        drawn = self.pictures()  # at the start an error is not caught: a lesson that cannot begin should say so
         # Of one size, whatever is drawn: the page below must not jump.
-        self._image = ipywidgets.HTML(in_theme(svg), layout=_wide(width))
-        self._readout = ipywidgets.HTML(_spoken(svg), layout=_wide(READOUT_WIDTH) | {"min_height": READOUT_HEIGHT})
+        self._images = [ipywidgets.HTML(in_theme(svg), layout=_wide(size_of(svg)[0])) for svg in drawn]
+        self._images[0].layout.grid_area = f"span {len(drawn)} / auto"  # what is beside it goes below the controls
+        self._readout = ipywidgets.HTML(_spoken(drawn), layout=_wide(READOUT_WIDTH) | {"min_height": READOUT_HEIGHT})
         self._knobs = {control.name: control.widget() for control in self.controls}
         self._line_up()
         self._quiet = False
@@ -207,7 +214,8 @@ class Explorer:
         buttons = [self._button(name) for name in self.settings]
         row = ipywidgets.HBox(buttons, layout=_wide(CONTROLS_WIDTH) | {"flex_flow": "row wrap"})
         controls = ipywidgets.VBox([*self._knobs.values(), row])
-        beside = ipywidgets.Box([controls, self._image], layout={"flex_flow": "row wrap"})  # below, where room is short
+        columns = f"repeat(auto-fit, min(100%, {CONTROLS_WIDTH + 4}px))"  # one below the other where room is short
+        beside = ipywidgets.GridBox([controls, *self._images], layout={"grid_template_columns": columns})
         return attended([beside, self._readout], sum(isinstance(control, Slider) for control in self.controls))
 
     def _line_up(self) -> None:
@@ -234,13 +242,15 @@ class Explorer:
         if self._quiet:
             return
         try:
-            svg = self.draw(**{name: knob.value for name, knob in self._knobs.items()})
+            drawn = self.pictures(**{name: knob.value for name, knob in self._knobs.items()})
             self.failure = None
         except Exception as error:  # whatever it is, a student must see it: a kernel would only log it
-            width, height = size_of(self._image.value)
-            svg = sentence(width, height, f"This could not be drawn. {type(error).__name__}: {error}")
+            words = f"This could not be drawn. {type(error).__name__}: {error}"
+            drawn = [sentence(*size_of(image.value), words) for image in self._images]
             self.failure = error
-        self._image.value, self._readout.value = in_theme(svg), _spoken(svg)
+        for image, svg in zip(self._images, drawn, strict=True):
+            image.value = in_theme(svg)
+        self._readout.value = _spoken(drawn)
 
     def _button(self, name: str) -> Any:
         import ipywidgets
@@ -285,6 +295,7 @@ def explore(
     *controls: Control,
     settings: Mapping[str, Mapping[str, Any]] | None = None,
     diagram: Callable[[], Picture] | None = None,
+    beside: Draw | None = None,
 ) -> Explorer:
     """Return a picture with controls.
 
@@ -301,8 +312,10 @@ def explore(
         Values worth looking at, by name; a control that is not named keeps its start.
     diagram : callable, optional
         Returns the drawing behind the lesson's formula, in which nothing moves.
+    beside : callable, optional
+        As ``draw``, for a second picture that moves along.
     """
-    return Explorer(draw, controls, settings, diagram)
+    return Explorer(draw, controls, settings, diagram, beside)
 
 
 def _named(control: Control) -> dict[str, Any]:
@@ -326,6 +339,7 @@ def _decimals(step: float) -> int:
     return len(text.split(".")[1])
 
 
-def _spoken(svg: str) -> str:
-    """Return the picture's sentence as a line that screen readers read anew when it changes."""
-    return f'<div aria-live="polite" style="line-height:1.4">{escape(what_it_says(svg))}</div>'
+def _spoken(drawn: Sequence[str]) -> str:
+    """Return the pictures' sentences as a line that screen readers read anew when it changes."""
+    words = " ".join(dict.fromkeys(map(what_it_says, drawn)))
+    return f'<div aria-live="polite" style="line-height:1.4">{escape(words)}</div>'

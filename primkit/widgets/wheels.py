@@ -15,7 +15,7 @@ from ..arguments import Floats
 from ..palette import BLUE, GREY, INK, ORANGE, PALE, VERMILION
 from ..robot import AXLE, WHEEL, moved
 from ..table import count
-from .drawing import Frame, board_frame, picture
+from .drawing import Frame, board_frame, idea_frame, picture
 from .slider import Explorer, Picture, Slider, explore
 
 BOARD_SIDE = 1.0  # m: side of the board
@@ -114,7 +114,7 @@ def _where(left: float, right: float, radius: float, turn: float, seconds: float
 
 def draw_diagram() -> Picture:
     """Return the drawing behind the lesson's formula: the arc, its chord, and the heading midway."""
-    frame = Frame((-0.02, 0.24), (-0.02, 0.17), width=603, height=470)
+    frame = idea_frame((-0.02, 0.24), (-0.02, 0.17), 603)
     pose, radius, turn = np.array([0.2, 0.0, np.pi / 2]), 0.16, np.radians(65)
     middle = pose[:2] - [radius, 0.0]
     angles = np.linspace(0, turn, 60)
@@ -128,7 +128,7 @@ def draw_diagram() -> Picture:
         frame.polyline(small, ORANGE, 2),
         frame.polyline(arc, BLUE, 4),
         frame.segments([pose[:2]], [end], VERMILION, 2.5, "7 4"),
-        frame.segments([pose[:2]], [onwards], INK, 1.5),
+        frame.arrow(pose[:2], onwards, INK, 1.5),
         frame.points([middle], ORANGE, "cross", 12),
         frame.robot(pose, GREY, 14),
         frame.robot([*end, pose[2] + turn], INK, 14),
