@@ -221,11 +221,12 @@ def shape_near(shape, points):
 
 
 def shapes_split(scans):
-    """One half of a group's points after the other."""
+    """Each group falls apart into four, one to the left of its middle and below it, and so on; a disc for each."""
     found = []
     for points in groups_of(scans):
-        left = points[:, 0] < points[:, 0].mean()
-        found += [pk.fit_circle(points[left]), pk.fit_circle(points[~left])]
+        quarter = (points > points.mean(axis=0)) @ [1, 2]
+        parts = [points[quarter == k] for k in range(4)]
+        found += [pk.Circle(part.mean(axis=0), np.ptp(part, axis=0).max() / 2) for part in parts]
     return found
 
 
