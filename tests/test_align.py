@@ -8,6 +8,7 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 import primkit as pk
+from primkit.driving.align import landmarks_in
 from primkit.driving.pose_graph import Hits, Landmarks, State, hit_rows, solve, step_rows, variances
 from primkit.robot import chained, increments
 
@@ -192,6 +193,25 @@ def test_between_two_parallel_walls_the_way_along_them_is_open():
     aligned = pk.align(driven(walls, true, reach=0.8), resolution=0.001)
     assert aligned.open[0].startswith("only parallel walls")
     assert aligned.std[-1, 0] > 10 * aligned.std[-1, 1]
+
+
+@pytest.mark.parametrize("seed", [401, 419])
+def test_noise_as_a_fifth_of_its_radius_gives_a_lone_circle_no_corners_to_turn_by(seed):
+    world = pk.World([pk.Circle((0.02, 0.01), 0.05)])
+    told = driven(world, orbit(), noise=0.01, reach=0.3, seed=seed)
+    aligned = pk.align(told)
+    assert rms(aligned.scans.poses, orbit()) < rms(told.poses, orbit())
+    assert aligned.open[0].startswith("only one circle was found")
+
+
+def test_a_room_that_slips_have_bent_has_landmarks_still():
+    """As a whole it is a thing of no kind: its straight pieces are what there is."""
+    bearing = np.arange(720) * np.pi / 360
+    ranges = 0.5 / np.maximum(np.abs(np.cos(bearing)), np.abs(np.sin(bearing))) + 0.02 * np.cos(8 * bearing)
+    bent = pk.Scans([(0, 0, 0)], bearing, [ranges], [False])
+    assert pk.find_shapes(bent.points(), rng=0).others
+    ends = landmarks_in(bent).ends
+    assert np.hypot(*(ends[:, 1] - ends[:, 0]).T).sum() > 3.5
 
 
 def test_scans_that_saw_nothing_are_counted(told):

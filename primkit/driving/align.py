@@ -33,6 +33,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arguments import Floats, as_positive, check_type
+from ..circles import fit_circle
 from ..grid import Grid
 from ..lidar import Scans
 from ..pipeline import find_shapes
@@ -98,8 +99,7 @@ class Alignment:
 def align(scans: Scans, *, resolution: float | None = None) -> Alignment:
     """Place scans anew whose poses are those of an odometry that slips; the first pose is believed.
 
-    A direction that nothing in view tells is held by the odometry, and the covariance is as wide there. Do not trust it
-    where the noise is a fifth of the only shape's radius or more: a circle may then be taken for a polygon.
+    A direction that nothing in view tells is held by the odometry, and the covariance is as wide there.
 
     Parameters
     ----------
@@ -188,15 +188,21 @@ def landmarks_in(scans: Scans) -> Landmarks:
     grid = Grid()
     grid.add(points[:: 1 + len(points) // MOST_SEARCHED])
     found = find_shapes(grid, rng=0)
-    circles = [(*one.shape.center, one.shape.radius) for one in found if isinstance(one.shape, Circle)]
-    corners = [(one.shape.vertices, one.seen) for one in found if not isinstance(one.shape, Circle)]
-    sides = [
-        (start, end)
-        for ring, seen in corners
-        for start, end, share in zip(ring, np.roll(ring, -1, axis=0), seen, strict=True)
-        if share >= SIDE_SEEN
-    ]
-    ends = np.array([*sides, *((wall.start, wall.end) for wall in found.walls)]).reshape(-1, 2, 2)
+    circles, sides = [], []
+    for one in found:
+        shape = one.shape
+        round_one = fit_circle(one.points) if len(found) == 1 and not (found.walls or found.others) else None
+        if round_one is not None and (round_one.signed_distance(one.points) ** 2).mean() < 2 * one.rms**2:
+            shape = round_one  # it stands alone, and no corner stands out of the scatter: there is nothing to turn by
+        if isinstance(shape, Circle):
+            circles.append((*shape.center, shape.radius))
+        else:
+            ends = zip(shape.vertices, np.roll(shape.vertices, -1, axis=0), one.seen, strict=True)
+            sides += [(start, end) for start, end, share in ends if share >= SIDE_SEEN]
+    walls = [(wall.start, wall.end) for wall in found.walls]
+    for thing in found.others:  # as of a room whose walls stand there twice
+        walls += zip(thing.outline, np.roll(thing.outline, -1, axis=0), strict=True)
+    ends = np.array([*sides, *walls]).reshape(-1, 2, 2)
     along = ends[:, 1] - ends[:, 0]
     bearing = np.arctan2(-along[:, 0], along[:, 1])
     lines = np.column_stack([bearing, np.cos(bearing) * ends[:, 0, 0] + np.sin(bearing) * ends[:, 0, 1]])
