@@ -231,12 +231,19 @@ def test_an_interrupt_shows_a_short_word():
 
 
 def test_a_function_of_another_name_is_told():
-    scope = {"__name__": "__main__"}
-    exec("def ray_circle(origin, direction, center, radius):\n    return ...\n", scope)
-    assert repr(pk.checks.ray_circle(scope["ray_circle"])) == "○ not attempted: ray_circle still returns `...`."
-    exec("def my_circle(origin, direction, center, radius):\n    return 1.0\n", scope)
-    says = pk.checks.ray_circle(scope["ray_circle"]).says
-    assert says.endswith("\nThis is about ray_circle. Is my_circle your answer? Then give it the name ray_circle.")
+    """If the cell that asks defines it: a helper of the lesson may have the same arguments."""
+    scope = {"check": pk.checks.ray_circle}
+
+    def run_cell(number, name):
+        code = f"def {name}(origin, direction, center, radius): return ...\nsays = check(ray_circle).says"
+        exec(compile(code, f"cell {number}", "exec"), scope)
+        return scope["says"]
+
+    stub = run_cell(1, "ray_circle")
+    assert stub == "ray_circle still returns `...`."
+    told = "\nThis is about ray_circle. Is my_circle your answer? Then give it the name ray_circle."
+    assert run_cell(2, "my_circle") == stub + told
+    assert run_cell(3, "ray_circle") == stub
 
 
 def test_what_is_given_may_not_change_whatever_it_is():

@@ -300,13 +300,16 @@ class Check:
         return f"{self.name}({', '.join(f'{name}={shown(arg)}' for name, arg in zip(names, args, strict=False))})"
 
     def _other_name(self, mine: Any) -> str:
-        """Return a word on a function in the notebook that has the same arguments and another name."""
-        if getattr(mine, "__module__", "") != "__main__" or not hasattr(mine, "__globals__"):
+        """Return a word on a function of the cell that asks which has the same arguments and another name."""
+        asks = inspect.currentframe()
+        while asks and asks.f_globals is not getattr(mine, "__globals__", None):
+            asks = asks.f_back
+        if asks is None:
             return ""
         names = list(inspect.signature(self.reference).parameters)
-        for name, other in mine.__globals__.items():
-            own = isinstance(other, FunctionType) and other is not mine and other.__module__ == "__main__"
-            if own and list(inspect.signature(other).parameters) == names and not name.startswith("_"):
+        for name, other in asks.f_globals.items():
+            own = isinstance(other, FunctionType) and other.__code__.co_filename == asks.f_code.co_filename
+            if own and other is not mine and list(inspect.signature(other).parameters) == names:
                 return f"\nThis is about {mine.__name__}. Is {name} your answer? Then give it the name {self.name}."
         return ""
 

@@ -1,5 +1,5 @@
-// What ipywidgets leaves out for a slider: its name and a rounded value for who cannot see it, arrow keys that the
-// notebook leaves alone (Notebook 7 would go to the next cell), and a word when Python does not answer.
+// What ipywidgets leaves out for a slider: its name and a rounded value for who cannot see it, keys that the notebook
+// leaves alone (an arrow would go to the next cell, D D delete this one), and a word when Python does not answer.
 const LATE = 5000; // ms: an answer that has not come by then will not come
 const SILENT = "Python does not answer. Is another cell running? After a restart of the kernel, run this cell again.";
 
@@ -34,8 +34,9 @@ function render({ model, el }) {
   const attach = () => {
     const panel = el.closest(".primkit-panel");
     const handles = panel?.querySelectorAll(".noUi-handle") ?? [];
-    if (handles.length < model.get("sliders")) return requestAnimationFrame(attach); // they are not there yet
-    for (const part of [panel, ...handles]) part.dataset.lmSuppressShortcuts = "true"; // some shortcuts ask the target alone
+    if (!panel || handles.length < model.get("sliders")) return requestAnimationFrame(attach); // not there yet
+    // Whatever has the focus: some shortcuts ask the target alone.
+    panel.addEventListener("focusin", ({ target }) => (target.dataset.lmSuppressShortcuts = "true"));
     panel.querySelectorAll(".widget-hslider").forEach(tell);
     for (const choice of panel.querySelectorAll(".widget-toggle-buttons")) {
       choice.setAttribute("role", "group");

@@ -84,7 +84,7 @@ def draw_poses(walls: str, aside: float, turn: float, steps: int) -> str:
         frame.points(points, BLUE, size=4),
         frame.robot(TRUE_POSE, GREY, 12),
         frame.robot(pose, VERMILION, 9),
-        title=f"After {count(steps, 'step')}: hits {rms:.1f} mm from walls, robot {away:.0f} mm off",
+        title=f"{count(steps, 'step').capitalize()}: hits {rms:.1f} mm off, robot {away:.0f} mm",
         says=f"Seeing {walls} of the walls, {aside:g} cm aside and turned by {turn:g} degrees: after "
         f"{count(steps, 'step')} the hits lie {rms:.1f} mm from their walls (root mean square), and the robot "
         f"{away:.1f} mm from where it is.",
@@ -118,7 +118,7 @@ def show_maps(maps: Mapping[str, Scans], world: World, *, sizes: Sequence[float]
                 frame.segments(world.walls[:, 0], world.walls[:, 1], INK, 1),
                 *(frame.shape(shape, INK, 1, fill=0) for shape in world.shapes),
                 frame.polyline(scans.poses[:, :2], ORANGE, 2),
-                title=f"Half of the hits within {half:.0f} mm of the truth, 95 % within {most:.0f} mm",
+                title=f"Half within {half:.0f} mm, 95 % within {most:.0f} mm",
                 says=f"half of the {len(points)} hits lie within {half:.0f} mm of a true outline, and 95 % within "
                 f"{most:.0f} mm.",
                 legend=MAP_LEGEND,

@@ -105,8 +105,8 @@ def draw_scores(tolerance: float, shape: float, center: float, board: str, noise
         room=WEIGHTS_ROOM,
         legend=SCORE_LEGEND,
         title=f"Within {tolerance:g} mm: ROBUST {_two(fair['ROBUST'])}, PAPER {_two(fair['PAPER'])}",
-        says=f"Map {board}, noise {noise} mm, right within {tolerance:g} mm: ROBUST scores {_two(fair['ROBUST'])}, "
-        f"PAPER {_two(fair['PAPER'])}; if what is too small is right, {_two(lax['ROBUST'])} and {_two(lax['PAPER'])}. "
+        says=f"Map {board}, noise {noise} mm, within {tolerance:g} mm: ROBUST scores {_two(fair['ROBUST'])}, PAPER "
+        f"{_two(fair['PAPER'])}; one-sided {_two(lax['ROBUST'])} and {_two(lax['PAPER'])}. "
         f"Weights: shape {weights[0]:.2f}, centre {weights[1]:.2f}, dimensions {weights[2]:.2f}.",
     )
 
@@ -130,8 +130,7 @@ def draw_map(tolerance: float, board: str, noise: int, **_weights: float) -> str
         *parts,
         legend=FINDINGS_LEGEND,
         title=f"Right values: ROBUST {n['ROBUST']}, PAPER {n['PAPER']} of {total}",
-        says=f"The map: of {total} values (kind, x, y and dimensions of each shape) ROBUST has {n['ROBUST']} right "
-        f"within {tolerance:g} mm, PAPER {n['PAPER']}.",
+        says=f"Of {total} values (kinds, x, y, dimensions) ROBUST has {n['ROBUST']} right, PAPER {n['PAPER']}.",
     )
 
 

@@ -142,7 +142,8 @@ class Twin(Picture):
     def _repr_html_(self) -> str:
         unfolded = ".primkit-twin::details-content{content-visibility:visible;height:auto}"
         on_paper = "pre{white-space:pre-wrap!important;overflow-wrap:anywhere}"  # lines that are too long go on below
-        opened = f"<style>@media print{{{unfolded}{on_paper}}}body.jp-Notebook {unfolded}</style>"  # or in an export
+        in_export = f"body.jp-Notebook:not([data-voila]) {unfolded}"
+        opened = f"<style>@media print{{{unfolded}{on_paper}}}{in_export}</style>"
         head = "<summary>The same picture with each named setting, side by side</summary>"
         return f'{opened}<details class="primkit-twin">{head}{super()._repr_html_()}</details>'
 

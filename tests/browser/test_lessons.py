@@ -109,6 +109,17 @@ def fits_a_phone(lesson):
     yield from too_wide(lesson.page, f"{PANEL}, .jp-RenderedImage")
 
 
+def cells_stay(lesson):
+    """No key on a control is the notebook's: an X would cut a cell."""
+    cells = lesson.page.locator(".jp-Cell")
+    before = cells.count()
+    for control in lesson.page.locator(".jupyter-widgets :is(button, .noUi-handle)").all():
+        control.press("x")
+        if cells.count() < before:
+            yield f"a key on a control cut {before - cells.count()} of {before} cells"
+            return
+
+
 TOO_WIDE = """(cells, selector) => cells.flatMap((cell, number) =>
     [...cell.querySelectorAll(selector)]
         .filter((part) => part.clientWidth && part.scrollWidth > part.clientWidth + 1)
@@ -140,6 +151,7 @@ RULES = {
     "callbacks run": callbacks_run,
     "fits a laptop": fits_a_laptop,
     "fits a phone": fits_a_phone,
+    "cells stay": cells_stay,  # the last: a lesson that has lost a cell is no lesson any more
 }
 
 

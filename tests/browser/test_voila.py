@@ -28,6 +28,7 @@ def test_the_page_shows_the_lesson_and_no_code(page):
     assert page.locator("h1").first.inner_text().startswith("See with rays")
     assert page.get_by_text("import primkit").count() == 0
     assert page.get_by_text("Traceback").count() == 0
+    assert page.locator(".primkit-twin img").bounding_box()["height"] == 0  # folded: here the slider itself moves
 
 
 @pytest.mark.parametrize("move", ["keys", "mouse"])
