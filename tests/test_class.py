@@ -172,6 +172,9 @@ def test_no_script_is_left_in_the_feedback(handed_back):
     assert harm_in("<script>x</script><a onclick=1 href='JavaScript:x'>") == ["script", "onclick", "href"]
     assert "ray_arc: 4 of 4 points" in body  # the marks' tables are as they were
     assert re.search(r'<table style="border-collapse:\s*collapse', body)
+    figure = re.search(r'<img src="data:image/png;base64,[\w+/=\s]+"[^>]*alt="(.*?)"', body)
+    assert "a beam meets the inside" in figure[1]  # a picture is one, with its words, and no letters of its HTML
+    assert "primkit-picture" not in body
 
 
 def test_a_link_that_runs_leads_nowhere(tmp_path):
@@ -199,6 +202,7 @@ def test_wrong_answers_that_fail_alike_are_one_kind_whose_comment_reaches_all(ha
     kinds = table(course / "reports" / PS / "kinds.csv")
     assert (kinds[0]["task"], kinds[0]["students"]) == (TASK, "2")
     assert set(kinds[0]["who"].split()) == alike
+    assert not any(kind["what"].startswith(":") for kind in kinds)
     assert kinds[0]["comment"] == COMMENT  # a second report has kept it
     assert "comments for 2" in said["hand-back"]
     told = {student for student, (_, trouble) in class_.items() if "Look again at =cone/2" in page(course, student)}

@@ -292,6 +292,21 @@ def test_what_was_mended_by_hand_stays(course):
     assert [version.source for version in versions_of(course, PS)["ada"]][-1] == "submitted/"
 
 
+def test_an_earlier_version_that_a_teacher_has_put_back_counts_from_then_on(course):
+    """As the pack says of an appeal; and it still came from the LMS, and is as late as it was."""
+    first = download(course, {moodle("Ada Lovelace", 1, "ps1.ipynb"): notebook("one")})
+    later = packed({moodle("Ada Lovelace", 1, "ps1.ipynb"): notebook("two")}, when=(2026, 3, 2, 12, 0, 0))
+    assert placed(course, first, download(course, later, "later.zip"))[0] == {"ada": "two"}
+    path = course.root / "submitted" / "ada" / PS / f"{PS}.ipynb"
+    path.write_bytes(notebook("one"))
+    for _ in range(2):
+        assert placed(course, first, course.root.parent / "later.zip")[0] == {"ada": "one"}
+    latest = versions_of(course, PS)["ada"][-1]
+    assert (latest.source, latest.sender["number"], latest.when) == ("submitted/", "1", "")
+    newest = packed({moodle("Ada Lovelace", 1, "ps1.ipynb"): notebook("three")}, when=(2090, 3, 3, 12, 0, 0))
+    assert placed(course, download(course, newest, "newest.zip"))[0] == {"ada": "three"}
+
+
 def test_late_by_the_course_s_settings(course):
     (course.root / "course.toml").write_text(
         "[due]\nps1 = 2026-03-01T10:00:00\n[later.ps1]\n0042 = 2026-03-09T10:00:00\n[late]\ngrace_minutes = 30\n"
@@ -528,12 +543,12 @@ def test_the_command_ends_with_a_table(course):
     assert re.search(r"^ada +PS1_Ada\.ipynb  packed 2026-03-01  new$", said, re.MULTILINE)
     assert re.search(r"^anna_mueller  - +nothing handed in$", said, re.MULTILINE)
     assert "1 file without a place:\n" in said
-    assert "Moodle's name 'Grace Hopper' is nobody's in the list of students: put it into a folder with the id" in said
+    assert "Moodle's name 'Grace Hopper' is nobody's in the list of students: mend the list, or put it into" in said
 
 
 def test_without_a_list_nobody_is_placed(tmp_path):
     made = new_course(tmp_path / "course", ASSIGNMENTS)
-    assert "the list of students is empty" in teach(made.root, "collect", PS, made.root, code=2)
+    assert f"students.csv in {made.root} is empty: fill it in" in teach(made.root, "collect", PS, made.root, code=2)
     (made.root / "students.csv").write_text(CLASS, encoding="utf-8")
     assert "there is no nowhere.zip to collect from" in teach(made.root, "collect", PS, "nowhere.zip", code=2)
 

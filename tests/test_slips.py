@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import primkit as pk
+from primkit.checks import Check, judges, slips
 from primkit.checks import answer as answers
-from primkit.checks import slips
 from primkit.course.grading.workers import SLIPS_SECONDS, Remote
 from tests.slips import make, named, right
 from tests.test_judge import afar, needs_fork, remote
@@ -216,6 +216,19 @@ def test_where_no_code_can_be_read_it_is_compared_with_the_plain_way():
     assert answer.says.endswith("That is what a plain way gives with one slip in it: a comparison, or a sign.") or (
         "one slip in it: a comparison" in answer.says
     )
+
+
+def test_arguments_in_another_order_are_told_where_that_is_all():
+    """A first line says the same of every case: what mends a part of them is another thing."""
+    source = "def mix(a, b):\n    return 2 * a + b"
+    for breaks, told in ((9, True), (5, False)):
+        check = Check(
+            "mix",
+            lambda a, b, breaks=breaks: 2 * b + a if a < breaks else a * b + 7,
+            lambda _rng: [(float(a), a + 3.0) for a in range(1, 9)],
+            judges.number("m"),
+        )
+        assert ("Look at line 1" in check(written(source)).says) is told
 
 
 def test_another_idea_is_no_slip():

@@ -25,7 +25,7 @@ from primkit.course.grade import _alone, _grade_one
 from primkit.course.graded import Graded, Journal
 from primkit.course.grading import MIME
 from primkit.course.handed_in import Fault, file_faults, tree_hash
-from primkit.course.printing import BROWSERS, print_set
+from primkit.course.printing import BROWSERS, page, print_set
 from primkit.course.running import nbgrader
 from tests.submissions import ProblemSet, about, answers_of, read
 from tests.test_assignments import points_left
@@ -481,7 +481,7 @@ def test_check_ends_with_1_where_something_is_wrong(course, capsys):
 SENTENCES = {
     "no course": (["check"], None),
     "no such set": (["release", "ps11"], "there is no problem set 'ps11'; did you mean 'ps1'?"),
-    "not handed in": (["grade", "ps1"], "nothing was handed in: put notebooks into submitted/<student>/ps1/"),
+    "not handed in": (["grade", "ps1"], "nothing was handed in: run `primkit teach collect ps1 DOWNLOAD`"),
     "not graded": (["report", "ps1"], "nothing of ps1 has been graded yet: run `primkit teach grade ps1` first"),
     "nothing to look at": (["leaks", "nowhere.whl"], "there is no nowhere.whl to look for leaks in"),
 }
@@ -586,10 +586,17 @@ def test_a_journal_that_is_none_is_refused_by_its_name(course, text):
 
 
 def test_a_handout_and_solutions_are_printed(course, monkeypatch):
-    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_markdown_cell("# A handout")])
-    for place in ("release", "source"):
-        (course.root / place / "tiny").mkdir(parents=True)
-        nbformat.write(notebook, course.root / place / "tiny" / "tiny.ipynb")
+    marks = {"nbgrader": {"grade_id": "figure", "locked": True, "grade": False, "solution": False, "schema_version": 3}}
+    given = nbformat.v4.new_code_cell("draw()", metadata=marks)
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_markdown_cell("# A handout"), given])
+    files = [course.root / place / "tiny" / "tiny.ipynb" for place in ("release", "source")]
+    for file in files:
+        file.parent.mkdir(parents=True)
+        nbformat.write(notebook, file)
+        given.outputs = [nbformat.v4.new_output("stream", text="what is drawn")]
+    html = page(*files)
+    assert "what is drawn" in html  # where the release has no outputs
+    assert "white-space: pre-wrap" in html.partition("</head>")[0]
     if any(map(shutil.which, BROWSERS)):
         written = [path.read_bytes()[:5] for path in print_set(course, "tiny")]
         assert written == [b"%PDF-", b"%PDF-"]

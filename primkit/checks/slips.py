@@ -116,6 +116,8 @@ def _search(
             slip = Slip(kind, code.line(number), len(wrong))
             if count == len(probes) and all(mended(edited, [case]) for case in (*wrong, *right)):
                 whole.append(slip)
+            elif (kind, number) == ("order", code.first):
+                continue  # of arguments: that is so in all cases, or in none
             elif len(parts) < PARTS or count > parts[-1][0]:
                 parts = sorted([*parts, (count, slip, copy.deepcopy(code))], key=lambda part: -part[0])[:PARTS]
         if whole:  # one of each kind first
@@ -153,6 +155,11 @@ class _Code:
     def name(self) -> str:
         """The function's name."""
         return str(self.function.__name__)
+
+    @property
+    def first(self) -> int:
+        """The function's first line."""
+        return next(part.lineno for part in self.tree.body if getattr(part, "name", "") == self.name)
 
     @classmethod
     def of(cls, mine: Any, near: Line | None = None) -> _Code | None:

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from ..installed import PROJECT, Finding, kernel, pins_in, python, version_of
+from ..table import count
 from .confining import UNPROTECTED, confined_by
 from .course import CONFIG, COPIED_FOLDERS, SETTINGS, STUDENTS, Course
 from .grading.judging import hidden_tests_of
@@ -148,7 +149,7 @@ def _settings(course: Course) -> Iterator[Finding]:
         return
     for name in sorted({*late.due, *(name for name, _ in late.later)} - {*course.sets()}):
         yield Finding(SETTINGS, f"there is no problem set {name}", "write its folder's name in source/")
-    yield Finding(SETTINGS, f"{len(late.due)} due dates", fine=True)
+    yield Finding(SETTINGS, count(len(late.due), "due date"), fine=True)
 
 
 def _secrets(course: Course) -> Iterator[Finding]:

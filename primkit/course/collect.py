@@ -20,7 +20,7 @@ from pathlib import Path
 from nbgrader.utils import parse_utc
 
 from .archives import Found, Refused, unpack
-from .course import Course
+from .course import STUDENTS, Course
 from .late import Late
 from .lms import Sender, sender_of, worksheet_times
 from .notebooks import Cells, cells_of, slim
@@ -29,7 +29,7 @@ from .versions import TIMESTAMP, Book, Version
 
 MOST_BESIDE = 32 * 2**20  # bytes of the files beside a notebook, all together
 MOST_FILES = 200  # of them
-REMEDY = "put it into a folder with the id as its name"
+REMEDY = "mend the list, or put it into a folder with the id as its name"
 PACKING_SECONDS = 3600  # the times in an LMS's archive that lie within are when it was made
 
 
@@ -49,7 +49,7 @@ def collect(course: Course, name: str, paths: Iterable[Path]) -> tuple[list[Coll
     """
     students = course.roster()
     if not students:
-        raise ValueError(f"the list of students is empty: fill it in, for they are found by it ({course.root})")
+        raise ValueError(f"{STUDENTS} in {course.root} is empty: fill it in, for who handed in is found by it")
     book = Book(course, name)
     unplaced: list[Refused] = []
     sheets: dict[str, datetime] = {}

@@ -119,7 +119,7 @@ def _students_to_grade(course: Course, name: str, only: Sequence[str]) -> list[s
     if unknown := sorted(set(only) - set(everybody)):
         raise ValueError(f"nothing was handed in for {name} by {', '.join(unknown)}")
     if not everybody:
-        raise ValueError(f"nothing was handed in: put notebooks into submitted/<student>/{name}/ in {course.root}")
+        raise ValueError(f"nothing was handed in: run `primkit teach collect {name} DOWNLOAD` first, in {course.root}")
     if not (course.root / "release" / name).is_dir():
         raise ValueError(f"{name} was not released: run `primkit teach release {name}` first, for nbgrader needs it")
     refuse_old_names(course, name)

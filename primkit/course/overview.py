@@ -114,7 +114,7 @@ class Overview:
             failed[wrong.student, wrong.task].append(wrong)
         for (student, task), wrongs in failed.items():
             if any(wrong.name != "not attempted" for wrong in wrongs):
-                told = [f"{w.part}: {w.name if w.name != UNNAMED else _without_numbers(w.says)}" for w in wrongs]
+                told = [": ".join(filter(None, [w.part, _named(w)])) for w in wrongs]
                 groups[task, "; ".join(told)].append(student)
         kinds = [
             Kind(hashlib.sha256(f"{task}\0{says}".encode()).hexdigest()[:8], task, says, tuple(sorted(students)))
@@ -228,13 +228,15 @@ def _read_cells(course: Course, name: str, student: str) -> dict[str, Shown]:
     return found
 
 
-def _without_numbers(says: str) -> str:
-    """Return what is off without the values of one student.
+def _named(wrong: Wrong) -> str:
+    """Return the name of what is off, or what is off without the values of one student.
 
-    >>> _without_numbers("in 3 of 8 cases. For example half(x=3): got 0.5 m, expected 1.5 m.")
+    >>> _named(Wrong("ada", "half", "", UNNAMED, "in 3 of 8 cases. For example half(x=3): got 0.5 m, expected 1.5 m."))
     'in some cases'
     """
-    words = re.sub(r"in \d+ of \d+ cases", "in some cases", says)
+    if wrong.name != UNNAMED:
+        return wrong.name
+    words = re.sub(r"in \d+ of \d+ cases", "in some cases", wrong.says)
     return re.sub(r"[-+]?\d[\d.e+-]*", "#", words.partition(". For example")[0].partition("\n")[0])
 
 

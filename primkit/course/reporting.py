@@ -85,8 +85,8 @@ def _by_student(course: Course, grades: Sequence[dict[str, str]]) -> tuple[list[
     for student in sorted({student for student, _ in told} | {*people}):
         points = [told.get((student, name), 0.0) for name in of]
         person = people.get(student, Student(student))
-        states = [columns[name](student) if (student, name) in told else "no set" for name in of]
-        table.append([student, person.first_name, person.last_name, *points, sum(points), *states])
+        table.append([student, person.first_name, person.last_name, *points, sum(points)])
+        table[-1] += [columns[name](student) for name in of]
     header = ["id", "first_name", "last_name", *(f"{name} (of {most})" for name, most in of.items()), "all", *of]
     return header, table
 

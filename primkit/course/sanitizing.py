@@ -14,6 +14,8 @@ Out: a notebook that nbgrader can grade; ``metadata.primkit.faults`` names what 
 
 from __future__ import annotations
 
+import re
+from html import unescape
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +34,7 @@ TAGS = (
 )
 SPANS = ["colspan", "rowspan", "scope"]
 ATTRIBUTES = {"*": ["style", "title"], "a": ["href"], "td": SPANS, "th": SPANS}
+ALT = re.compile(r'<img [^>]*alt="([^"]*)"')
 
 
 class SafeFeedback(sanitize.SanitizeHTML):
@@ -51,6 +54,10 @@ class SafeFeedback(sanitize.SanitizeHTML):
         if cell.cell_type != "code" and cell.metadata.get("nbgrader", {}).get("locked"):
             return cell, resources
         cell.pop("attachments", None)
+        for output in cell.get("outputs", ()):  # of a picture, its pixels and its words: as HTML it would be cut apart
+            if "image/png" in output.get("data", {}):
+                words = ALT.search(str(output.data.pop("text/html", "")))
+                output["metadata"] = {"image/png": {"alt": unescape(words[1])}} if words else {}
         return super().preprocess_cell(cell, resources, cell_index)  # type: ignore[no-untyped-call]
 
 

@@ -12,9 +12,10 @@ import json
 import os
 import re
 import shutil
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
+from pathlib import Path
 
 from ..arguments import short
 from ..formats.files import bounded_read, naming, write_atomically
@@ -24,6 +25,7 @@ from .handed_in import tree_hash
 from .late import NBGRADER_TIME
 
 TIMESTAMP = "timestamp.txt"  # nbgrader's own: beside a notebook, the time it came
+BY_HAND = "submitted/"  # the source of what a teacher has put there
 
 
 @dataclass
@@ -70,7 +72,8 @@ class Book:
     def add(self, new: Version, files: Mapping[str, bytes]) -> None:
         """Keep a version and its files, unless they are here already."""
         new.hash, have = _hash(files), self.versions.setdefault(new.student, [])
-        same = next((version for version in reversed(have) if version.hash == new.hash), None)
+        came = (version for version in reversed(have) if version.source != BY_HAND)
+        same = next((version for version in came if version.hash == new.hash), None)
         # A copy of what counts is no later submission; what was handed in again after another one is.
         if same is not None and (same is have[-1] or new.order[0] <= have[-1].order[0]):
             if (same.sender or new.sender, same.when or new.when) == (same.sender, same.when):
@@ -100,19 +103,23 @@ class Book:
     def hand_over(self, student: str) -> bool:
         """Put a student's latest version where grading finds it; return whether it was not there.
 
-        What somebody has put there by hand becomes one more version, of the time when it was written.
+        What somebody has put there by hand, an earlier version among them, becomes one more version, of the time when
+        it was written; how late it is says its ``timestamp.txt`` alone.
         """
-        place = self.course.root / "submitted" / student / self.name
-        files = {path: path.read_bytes() for path in place.rglob("*") if path.is_file() and path.name != TIMESTAMP}
-        code = _hash({path.relative_to(place).as_posix(): content for path, content in files.items()})
-        if files and all(version.hash != code for version in self.versions[student]):
-            written = datetime.fromtimestamp(max(path.stat().st_mtime for path in files), UTC)
-            folder, told = f"{student}/{written:%Y%m%d-%H%M%S}-{code[:8]}", written.isoformat(timespec="seconds")
+        place, have = self.course.root / "submitted" / student / self.name, self.versions[student]
+        files, latest = _files(place), have[-1]
+        code = _hash({path.relative_to(place).as_posix(): path.read_bytes() for path in files})
+        written = _written(files)
+        chosen = code != latest.hash and written > _written(_files(self.root / latest.folder))
+        if files and (chosen or all(version.hash != code for version in have)):
+            moment = datetime.fromtimestamp(written, UTC)
+            folder, told = f"{student}/{moment:%Y%m%d-%H%M%S}-{code[:8]}", moment.isoformat(timespec="seconds")
             shutil.copytree(place, self.root / folder, dirs_exist_ok=True)
-            by_hand = Version(student, told, told, "submitted/", "by hand", folder=folder, hash=code)
-            self.versions[student] = sorted([*self.versions[student], by_hand], key=lambda version: version.order)
+            sender = next((version.sender for version in reversed(have) if version.sender), {})
+            have.append(Version(student, "", told, BY_HAND, "by hand", sender, folder=folder, hash=code))
+            have.sort(key=lambda version: version.order)
             self.write()
-        latest = self.versions[student][-1]
+        latest = have[-1]
         if not files or tree_hash(place) != tree_hash(self.root / latest.folder):
             new, old = (place.with_name(f".{self.name}.{which}") for which in ("new", "old"))
             for each in (new, old):
@@ -123,6 +130,14 @@ class Book:
             new.rename(place)
             shutil.rmtree(old, ignore_errors=True)
         return latest.hash != code
+
+
+def _files(folder: Path) -> list[Path]:
+    return [path for path in folder.rglob("*") if path.is_file() and path.name != TIMESTAMP]
+
+
+def _written(files: Iterable[Path]) -> float:
+    return max((path.stat().st_mtime for path in files), default=0.0)
 
 
 def _hash(files: Mapping[str, bytes]) -> str:
