@@ -3,6 +3,7 @@
 import gzip
 import re
 import sys
+from types import SimpleNamespace as Namespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 
 import primkit as pk
 from primkit.arguments import LikelyWrong
+from primkit.formats.bags import _matrix
 from tests.filing import refusal, written
 from tests.recorded import BAGS, Bag, carmen_log, driven_bag, table, write_log
 
@@ -177,6 +179,12 @@ def test_what_is_no_bag_is_refused(tmp_path, name):
     sentence = "folder: must be a bag, or a folder with a .db3 or .mcap file, got neither"
     assert refusal(pk.load_scans, tmp_path / "folder") == sentence
     assert "no such file" in refusal(pk.load_scans, tmp_path / f"none_{name}", error=FileNotFoundError)
+
+
+@pytest.mark.parametrize(("component", "told"), [(0.1, "0.2"), (1e200, "2e+200"), (1.7e308, "inf"), (np.nan, "nan")])
+def test_what_is_no_rotation_is_refused_without_a_warning(component, told):
+    turn, place = Namespace(x=component, y=component, z=component, w=component), Namespace(x=0, y=0, z=0)
+    assert refusal(_matrix, place, turn) == f"a quaternion must have the norm 1, got {told}"
 
 
 def test_without_rosbags_one_sentence_says_so(tmp_path, monkeypatch):

@@ -247,3 +247,15 @@ def test_sides_that_no_beam_met_are_not_certain_however_sparse_their_neighbours_
         points = np.array([(x, y) for y in (0, apart) for x in np.arange(0, 0.48, 0.03)])
         found = pk.find_shapes(points + rng.normal(0, 0.005, points.shape), resolution=0.01, rng=0)
         assert not any(one.certain for one in found)
+
+
+@pytest.mark.parametrize("width", [0.018, 0.03])
+def test_a_plank_whose_end_no_beam_met_is_not_certain(width):
+    """Its other three sides were seen; the points at the ends of the two long ones lie near the whole of this one."""
+    rng, certain = np.random.default_rng(0), []
+    for _ in range(5):
+        long = np.array([(x, y) for y in (0, width) for x in np.arange(0, 0.2, 0.0005)])
+        end = np.array([(0, y) for y in np.arange(0, width, 0.0005)])
+        points = np.vstack([long, end])
+        certain += [one.certain for one in pk.find_shapes(points + rng.normal(0, 0.002, points.shape), rng=0)]
+    assert not any(certain)

@@ -197,8 +197,8 @@ def landmarks_in(scans: Scans) -> Landmarks:
         if isinstance(shape, Circle):
             circles.append((*shape.center, shape.radius))
         else:
-            ends = zip(shape.vertices, np.roll(shape.vertices, -1, axis=0), one.seen, strict=True)
-            sides += [(start, end) for start, end, share in ends if share >= SIDE_SEEN]
+            each = zip(shape.vertices, np.roll(shape.vertices, -1, axis=0), one.seen, strict=True)
+            sides += [(start, end) for start, end, share in each if share >= SIDE_SEEN]
     walls = [(wall.start, wall.end) for wall in found.walls]
     for thing in found.others:  # as of a room whose walls stand there twice
         walls += zip(thing.outline, np.roll(thing.outline, -1, axis=0), strict=True)

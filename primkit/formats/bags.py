@@ -13,6 +13,7 @@ and what it unpacks to is not bounded here: read those of strangers where it may
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
@@ -111,7 +112,7 @@ def _frame(name: str) -> str:
 def _matrix(place: Any, turn: Any) -> Floats:
     """Return a transform from a place [m] and a quaternion, shape (4, 4)."""
     axis = turn.x, turn.y, turn.z
-    norm = float(np.hypot(sine := float(np.linalg.norm(axis)), turn.w))
+    norm = math.hypot(sine := math.hypot(*axis), turn.w)  # which tells of no overflow
     if not 0.5 < norm < 2:
         raise ValueError(f"a quaternion must have the norm 1, got {norm:g}")
     return moved((place.x, place.y, place.z), turned(axis, 2 * float(np.arctan2(sine, turn.w))))

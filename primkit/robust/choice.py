@@ -19,7 +19,7 @@ from ..lines import Line
 from ..seen import seen_shares
 from ..shapes import KINDS, Circle, Polygon, Shape
 from .candidates import candidates, explained_again
-from .deviations import Certainty, certainty, own_points, short_sides
+from .deviations import Certainty, certainty, without_points
 from .evidence import CERTAIN, NEARLY_ALL, Candidate
 from .free import free_candidate
 from .lack_of_fit import lack_of_fit
@@ -158,29 +158,18 @@ class Choice:
         best = self.ranked[0] if self.ranked else None
         if best is None or best.shape is None:
             return False
+        figure = best.figure
         large = best.shape.dimensions[-1] if isinstance(best.shape, Circle) else best.shape.sides.min()
         return bool(
             min(self.lead, self.fit) >= CERTAIN
             and self.on_it.mean() >= NEARLY_ALL
             and not self.inside.any()
             and min(best.seen) >= MOST_SEEN
-            and self._has_own_points
+            and not (isinstance(figure, Outlines) and without_points(figure, self.points, self.spread).any())
             and large >= LEAST_SIDE
-            and not (isinstance(best.figure, Outlines) and best.figure.of_two)
+            and not (isinstance(figure, Outlines) and figure.of_two)
             and self.margin >= CERTAIN  # the last, for it fits the rivals that were not
         )
-
-    @property
-    def _has_own_points(self) -> bool:
-        """Whether each side that is long for the spread has points of its own.
-
-        Where points are sparse, those of its neighbours lie near a hidden one, too.
-        """
-        figure = self.ranked[0].figure
-        if not isinstance(figure, Outlines):
-            return True
-        own = own_points(figure, self.points, self.spread).any(axis=0)
-        return bool((own | short_sides(figure, self.spread)).all())
 
 
 def explained(

@@ -45,6 +45,7 @@ LEAST_SEEN_STRETCH = 0.008
 LEAST_SHARE = 0.4
 LEAST_OF_CIRCLE = 0.45
 CORNER_SPREADS = 4.0
+LEAST_ROOM, LEAST_OWN = 3.0, 2  # spreads and points: next to no two of a neighbour's points lie farther from its line
 MOST_STD = 0.01  # m: what is not even known to a centimetre was not measured, but supposed
 STEP = 1e-6  # rad and m, and spreads: the derivatives' step, far above rounding and far below any curvature
 
@@ -115,20 +116,27 @@ def _measured(figure: Outlines, seen: NDArray[np.bool_], square: bool, rectangle
     return np.roll(seen, 1) & seen & np.roll(seen, -1)  # a side ends where its neighbours' lines cross it
 
 
-def own_points(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bool_]:
-    """Tell which points, shape (N, 2), lie on which of the K sides and not near a corner of it, shape (N, K)."""
-    r, room = figure.distances(points)[0], CORNER_SPREADS * spread
+def own_points(figure: Outlines, points: Floats, spread: float, room: float = CORNER_SPREADS) -> NDArray[np.bool_]:
+    """Tell which points, shape (N, 2), lie on which of the K sides and not near a corner of it, shape (N, K).
+
+    Near is within so many spreads as there is ``room``.
+    """
+    r = figure.distances(points)[0]
     if figure.convex:
-        of_no_other = np.count_nonzero(r < -room, axis=1) >= r.shape[1] - 1  # inside all sides but one, the near one
+        of_no_other = np.count_nonzero(r < -room * spread, axis=1) >= r.shape[1] - 1  # inside all but the near one
         return (np.abs(r) <= SIGMAS * spread) & of_no_other[:, None]
     t, (begin, end) = figure.along(points)[0], figure.spans()
-    return (np.abs(r) <= SIGMAS * spread) & (t > begin + room) & (t < end - room)
+    return (np.abs(r) <= SIGMAS * spread) & (t > begin + room * spread) & (t < end - room * spread)
 
 
-def short_sides(figure: Outlines, spread: float) -> NDArray[np.bool_]:
-    """Tell which sides of an outline lie near their corners for the most part, shape (K,)."""
+def without_points(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bool_]:
+    """Tell which sides have not two points of their own, shape (K,), of those long enough that some would be there.
+
+    Where points are sparse, those of its neighbours lie near a hidden side, too.
+    """
     begin, end = figure.spans()
-    return np.asarray((end - begin)[0] < 4 * CORNER_SPREADS * spread)
+    long = (end - begin)[0] >= (2 * LEAST_ROOM + 1) * spread
+    return np.asarray(long & (own_points(figure, points, spread, LEAST_ROOM).sum(axis=0) < LEAST_OWN))
 
 
 def sides_seen(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bool_]:
