@@ -74,10 +74,12 @@ def lessons_into(folder):
     titles = {}
     for path in sorted((ROOT / "notebooks").glob("[0-9]*.ipynb")):
         lesson = json.loads(path.read_text(encoding="utf-8"))
-        titles[path.stem] = "".join(lesson["cells"][0]["source"]).partition("\n")[0].removeprefix("# ")
+        title = "".join(lesson["cells"][0]["source"]).partition("\n")[0].removeprefix("# ")
+        titles[path.stem] = f"{path.stem[:2]} {title}"
         (folder / path.name).write_text(json.dumps(page_of(lesson)), encoding="utf-8")
     listed = "\n".join(f"* [{title}]({name}.ipynb)" for name, title in titles.items())
-    (folder / "index.md").write_text(f"# Lessons\n\n{listed}\n\n{tree(titles)}", encoding="utf-8")
+    below = [f"{title} <{name}>" for name, title in titles.items()]
+    (folder / "index.md").write_text(f"# Lessons\n\n{listed}\n\n{tree(below)}", encoding="utf-8")
     return titles
 
 
@@ -85,9 +87,9 @@ def front(readme, titles):
     """Return the front page and the page behind it, from README.md."""
     intro, _, rest = re.sub(r"<!--.*?-->\n*", "", readme, flags=re.DOTALL).partition("\n## Start\n")
     doors = "\n".join(f"* [{title}](lessons/{name}.ipynb)" for name, title in titles.items())
-    chapters = "start", "lessons/index", "live", "results", "api/index", "teacher/README", "changelog"
+    chapters = "start", "lessons/index", "live", "Results <results>", "api/index", "Teachers <teacher/README>"
     words = "**[Start here](start.md)**, [try it live](live.md), or read: the sliders and quizzes of these pages work."
-    yield "index.md", f"{intro}\n\n{words}\n\n## The lessons\n\n{doors}\n\n{tree(chapters)}"
+    yield "index.md", f"{intro}\n\n{words}\n\n## The lessons\n\n{doors}\n\n{tree((*chapters, 'Changes <changelog>'))}"
     yield "start.md", f"# Start\n{rest}"
 
 

@@ -18,6 +18,7 @@ from primkit.widgets.svg import as_svg, path, words_at
 
 FILM = Path(__file__).resolve().parent.parent / "data" / "pictures" / "film.svg"
 SECONDS, DRIVEN = 8, 0.8  # of the film, and the share of it in which the robot drives; then what was found is shown
+MARGIN = 12  # px, around the board: it has no axes
 PLACES = 120  # of the robot: between them it goes straight
 SHOWN = "@keyframes k{k}{{0%{{opacity:0}}{at:.4g}%{{opacity:1}}}}.k{k}{{animation:k{k} {s}s steps(1,end) infinite}}"
 
@@ -58,8 +59,9 @@ def film(world, tour):
         f"A robot drives over a board and scans at {tour.n_scans} places; the points become {len(tour.found)} shapes."
     )
     words = words_at(left, top - 8, "It sees points. What stands there?", color="#222222", size=15, bold=True)
-    body = f"<style>{style}</style>{board}{words}{''.join(parts)}{robot}"
-    return as_svg(frame.width, int(bottom) + 12, "A robot finds four shapes", says, body)
+    drawn = f'<g transform="translate({MARGIN - left:g})">{board}{words}{"".join(parts)}{robot}</g>'
+    width, height = int(right - left) + 2 * MARGIN, int(bottom) + MARGIN
+    return as_svg(width, height, "A robot finds four shapes", says, f"<style>{style}</style>{drawn}")
 
 
 def front_page():
