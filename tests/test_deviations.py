@@ -7,8 +7,10 @@ import pytest
 
 import primkit as pk
 from primkit.measure import measure_shape
+from primkit.robust import deviations
 from primkit.robust.deviations import certainty, sides_seen
 from primkit.robust.scatter import CELL_STD, LEAST_SPREAD, MEAN_ACROSS, spread_across
+from tests.benchmarks.open_world.boards import rng_of, seen_on
 from tests.test_outlines import outline_of
 
 TRIANGLE = pk.Polygon([(-0.08, -0.05), (0.08, -0.05), (0.0, 0.09)])
@@ -207,3 +209,23 @@ def test_points_alone_are_as_sure_as_a_grid_when_the_noise_is_told():
     )
     np.testing.assert_allclose(and_told, by_grid, rtol=0.2)
     assert (alone > 1.3 * and_told).all()
+
+
+def test_a_number_that_can_slip_to_one_side_is_as_uncertain_as_the_likelihood_says(monkeypatch):
+    """Of a triangle with a sharp corner two sides are 4.1 and 3.4 of the deviations to first order too short."""
+    rng = rng_of(31, 69)
+    world = pk.random_world(4, style="free", rng=rng)
+    grid = seen_on(world, rng, noise_std=0.002)
+
+    def farthest_off():
+        found = pk.find_shapes(grid, rng=0)
+        off = [
+            np.abs(np.sort(found[f].shape.dimensions) - np.sort(world.shapes[t].dimensions))
+            / np.take(found[f].dimension_std, np.argsort(found[f].shape.dimensions))
+            for f, t in pk.match(found, world.shapes)
+        ]
+        return max(map(np.max, off))
+
+    wider = farthest_off()
+    monkeypatch.setattr(deviations, "LEAST_RISE", 0.0)
+    assert wider < 3 < 4 < farthest_off()

@@ -16,7 +16,7 @@ The fitted numbers q are those for which the points' equations add up to zero, a
 
 So a point that moves across by e moves them by A e, A = -(sum dg/dq)^-1 dg/de. Both slopes are differences: shares
 between sides, which noise around a corner blurs, and far points that are held back, are then as they were in the fit.
-What e is, ``covariance`` tells.
+What e is, ``covariance`` tells. To one side a number may slip farther than to first order; see ``_wider``.
 
 Sources: Huber (1967), "The behavior of maximum likelihood estimates under nonstandard conditions".
 """
@@ -45,8 +45,9 @@ LEAST_SEEN_STRETCH = 0.008
 LEAST_SHARE = 0.4
 LEAST_OF_CIRCLE = 0.45
 CORNER_SPREADS = 4.0
-LEAST_ROOM, LEAST_OWN = 3.0, 2  # spreads and points: next to no two of a neighbour's points lie farther from its line
+OWN_SPREADS, LEAST_OWN = 3.0, 2  # spreads and points: next to no two of a neighbour's points lie farther from its line
 MOST_STD = 0.01  # m: what is not even known to a centimetre was not measured, but supposed
+AHEAD, LEAST_RISE, MOST_WIDER = 3.0, 0.6, 3.0  # deviations; share of the rise that should be; times
 STEP = 1e-6  # rad and m, and spreads: the derivatives' step, far above rounding and far below any curvature
 
 
@@ -104,7 +105,11 @@ def certainty(
     rectangle = figure.kind == "rectangle"
     center, dimension = _derivatives(figure, rectangle)
     measured = _measured(figure, seen, square, rectangle)
-    return Certainty(_std(center, spreads, np.full(2, seen.all())), _std(dimension, spreads, measured))
+    shifts = np.vstack([center, dimension]) @ spreads
+    std = np.sqrt((shifts * np.vstack([center, dimension])).sum(axis=1))
+    std *= _wider(figure, points, spread, shifts / std[:, None])
+    std = np.where(np.append(np.full(2, seen.all()), measured) & (std <= MOST_STD), std, np.inf)
+    return Certainty(tuple(std[:2].tolist()), tuple(std[2:].tolist()))
 
 
 def _measured(figure: Outlines, seen: NDArray[np.bool_], square: bool, rectangle: bool) -> NDArray[np.bool_]:
@@ -135,8 +140,8 @@ def without_points(figure: Outlines, points: Floats, spread: float) -> NDArray[n
     Where points are sparse, those of its neighbours lie near a hidden side, too.
     """
     begin, end = figure.spans()
-    long = (end - begin)[0] >= (2 * LEAST_ROOM + 1) * spread
-    return np.asarray(long & (own_points(figure, points, spread, LEAST_ROOM).sum(axis=0) < LEAST_OWN))
+    long = (end - begin)[0] >= (2 * OWN_SPREADS + 1) * spread
+    return np.asarray(long & (own_points(figure, points, spread, OWN_SPREADS).sum(axis=0) < LEAST_OWN))
 
 
 def sides_seen(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bool_]:
@@ -238,7 +243,20 @@ def _centroids(corners: Floats) -> Floats:
     return first[:, 0] + np.column_stack(moments) / (3 * weight.sum(axis=1))[:, None]
 
 
-def _std(slopes: Floats, covariance: Floats, measured: NDArray[np.bool_]) -> tuple[float, ...]:
-    """Return sqrt(diag(J C J')), infinite where it was not measured."""
-    std = np.sqrt(np.einsum("ij,jk,ik->i", slopes, covariance, slopes))
-    return tuple(np.where(measured & (std <= MOST_STD), std, np.inf).tolist())
+def _wider(figure: Outlines, points: Floats, spread: float, shifts: Floats) -> Floats:
+    """Return how many times wider deviations are than to first order, as the points' likelihood L tells, shape (D,).
+
+    ``shifts``, shape (D, 2 K), is where a deviation of each number brings angles and offsets. ``AHEAD`` deviations off,
+    -2 ln L should have risen by ``AHEAD^2``, or as far as it has to the other side where the cells' errors even out. It
+    may rise more slowly: a shallow corner, next to which few points lie, can slip along. Where it rises by less than
+    ``LEAST_RISE`` of that, the deviation is as wide as the rise says.
+    """
+    steps, k = AHEAD * np.vstack([np.zeros_like(shifts[:1]), shifts, -shifts]), figure.angles.shape[1]
+    moved = Outlines(figure.angles + steps[:, :k], figure.offsets + steps[:, k:])
+    share, _, log_likelihood = shares(points, moved, spread)
+    begin, end = moved.spans()
+    length = np.maximum((end - begin).sum(axis=1), spread)  # over which the points are spread, as in ``evidence``
+    cost = 2 * share.sum(axis=(1, 2)) * np.log(length) - 2 * log_likelihood
+    less, more = np.sort((cost[1:] - cost[0]).reshape(2, -1), axis=0)
+    risen = less / np.clip(more, 1.0, AHEAD**2)
+    return np.where(risen < LEAST_RISE, np.maximum(risen, MOST_WIDER**-2) ** -0.5, 1.0)
