@@ -4,7 +4,8 @@
 
 In:  a folder of pages, and Chromium or Chrome.
 Out: a sentence for each fault: a request that leaves the folder, an error of a script, a page that is wider than its
-     window, a slider that does not move, a control without a name, a picture without words, a search without results.
+     window, a slider that does not move, a control without a name, a picture without words, a formula that stands there
+     as typed, a search without results.
 """
 
 import shutil
@@ -23,6 +24,10 @@ NAMELESS = """() => [...document.querySelectorAll("main :is(img, button, input, 
   return !(words || label.trim() || one.textContent.trim() || one.querySelector?.("img[alt], svg")
     || one.closest("[aria-hidden=true]"));
 }).map((one) => one.outerHTML.slice(0, 80))"""
+
+TYPED = (
+    r"""() => document.querySelector("main").innerText.match(/\$\$.*|\\(?:frac|sum|sqrt|theta|sigma|le)\b.*/g) ?? []"""
+)
 
 
 def main():
@@ -65,6 +70,7 @@ def look_at(page, path, width):
     if (wide := page.evaluate("document.documentElement.scrollWidth")) > width:
         yield f"{wide} px wide in a window of {width} px"
     yield from (f"nameless: {one}" for one in page.evaluate(NAMELESS))
+    yield from (f"as typed: {one}" for one in page.evaluate(TYPED))
     yield from (f"asks for {url}" for url in asked if not url.startswith(("file:", "data:", "blob:")))
     yield from (f"script: {error}" for error in errors)
 
