@@ -126,6 +126,7 @@ function render({ model, el }) {
     pause();
   });
   parts.root.addEventListener("keydown", (event) => event.key !== "Tab" && event.stopPropagation()); // not the notebook's
+  parts.root.addEventListener("click", ({ target }) => target.closest("button") || parts.time.focus()); // nor after a click
   model.on("msg:custom", hear);
   const unwatch = onLook(parts.canvas, soon);
   model.send({ do: "hello" });

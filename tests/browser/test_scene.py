@@ -289,6 +289,14 @@ def test_without_its_guards_the_same_keys_harm_a_cell(another_lab, folder):
             assert harm(another_lab, keys), keys
 
 
+def test_after_a_click_into_a_film_no_key_harms_a_cell(another_lab, folder):
+    (folder / "notebooks" / "clicked.ipynb").write_text(notebook(FILM))
+    with opened(another_lab, "clicked", 0):
+        player = Player(another_lab)
+        player.root.locator("canvas").click()
+        assert not harm(another_lab, "ddxx")
+
+
 def test_a_cell_that_is_run_gives_its_scene_the_focus(another_lab, folder):
     """Nobody has clicked into it, and d d deletes no cell; Escape gives the keys back to the notebook."""
     page = another_lab
