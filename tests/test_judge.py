@@ -1,11 +1,13 @@
 """The judge: graded cells run outside, the student's functions from afar; only what they return counts."""
 
+import json
 import os
 import re
 import sys
 import tempfile
+import threading
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -19,10 +21,11 @@ from nbgrader.utils import determine_grade
 import primkit as pk
 from primkit.checks import Check, judges
 from primkit.course import confining, executing, own_kernel
+from primkit.course.checking import _points
 from primkit.course.course import new_course
 from primkit.course.executing import CarefulExecute
 from primkit.course.grading import MIME, Part, Task, serving
-from primkit.course.grading.judging import hidden_tests_of
+from primkit.course.grading.judging import Judging, hidden_tests_of
 from primkit.course.grading.plain_values import pack, unpack
 from primkit.course.grading.task import missing
 from primkit.course.grading.workers import Ended, OutOfTime, Workers
@@ -226,6 +229,36 @@ def test_t17_waiting_for_a_busy_machine_is_no_fault(monkeypatch):
         monkeypatch.setattr("psutil.getloadavg", lambda: (0.0, 0.0, 0.0))
         with pytest.raises(OutOfTime):
             remote(workers, "length").afresh()(np.array([3.0, 4.0]))
+
+
+@pytest.mark.parametrize(("load", "comes"), [(10.0, True), (0.0, False)])
+def test_t17_a_worker_that_comes_late_on_a_busy_machine_is_met(tmp_path, monkeypatch, load, comes):
+    monkeypatch.setattr("psutil.getloadavg", lambda: (load * psutil.cpu_count(), 0.0, 0.0))
+    monkeypatch.setattr("primkit.course.grading.workers.GREETING_SECONDS", 0.3)
+    lines = []
+    clock = threading.Timer(1.0, lambda: lines.append(serving._greet(workers.address, 3, "worker")))
+    workers = Workers(tmp_path, lambda: 0.0, 5.0, make=lambda _cell: clock.start())
+    with suppress(Ended):
+        workers.start(3)
+    assert (workers.line is not None) is comes
+    clock.join()
+    lines[0].close()
+    workers.close()
+
+
+def test_a_graded_cell_of_no_points_is_a_dropped_task_and_runs_nothing(tmp_path):
+    made = assignments(tmp_path / "assignments", dropped={"dropped": ["half"]})
+    course = new_course(tmp_path / "course", made)
+    path, tests = course.root / "source" / "dropped" / "dropped.ipynb", course.root / "grader" / "halves.py"
+    tests.write_text(f"{tests.read_text()}\nHALF = task('half')\n")
+    for points, fine in ((2, False), (3, True), (0, True)):
+        notebook = read(path)
+        (cell,) = [cell for cell in notebook["cells"] if about(cell).get("grade_id") == "half-hidden"]
+        cell["metadata"]["nbgrader"]["points"] = points
+        cell["source"] = "from grader.halves import HALF\n\nHALF.mark('half', globals())"
+        path.write_text(json.dumps(notebook))
+        assert all(finding.fine for finding in _points(course)) is fine
+    assert Judging(path, missing).outputs("half-hidden", 0, None) == []
 
 
 @needs_fork

@@ -125,7 +125,7 @@ def _points_of(course: Course) -> Iterator[tuple[str, float, float | str]]:
         for mark, cell in marked(read_notebook(path)):
             about, source = cell["metadata"]["nbgrader"], text_of(cell)
             task = MARK.search(source)
-            if about.get("grade") and task:
+            if about.get("grade") and about.get("points") and task:  # one of 0 points was dropped
                 gives: float | str
                 try:
                     scope: dict[str, Any] = {}

@@ -68,6 +68,8 @@ class OwnKernel(Execute):  # type: ignore[misc]
     course = Unicode("", help="The course folder.").tag(config=True)
     megabytes = Integer(4096, help="Memory limit of the kernel, in megabytes.").tag(config=True)
 
+    startup_timeout = Integer(300, help="Seconds until a kernel answers, on a machine however busy.").tag(config=True)
+
     twins = 0  # of the kernel's, which are no processes of the student's
 
     def prepare(self, scratch: Path, without: Sequence[str] = ()) -> None:

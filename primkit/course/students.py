@@ -18,6 +18,7 @@ import re
 import unicodedata
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from ..arguments import short
@@ -152,16 +153,18 @@ def _folded(text: str) -> str:
     return unicodedata.normalize("NFC", unicodedata.normalize("NFC", text).casefold())
 
 
-def _spellings(text: str) -> list[str]:
+@cache  # each file of a large class is compared with everybody
+def _spellings(text: str) -> tuple[str, str, str]:
     """Return a name as it is, with ae for ä, and without what stands above and below its letters; always three."""
     whole = _folded(text)
     plain = "".join(sign for sign in unicodedata.normalize("NFKD", whole) if not unicodedata.combining(sign))
-    return [whole, whole.translate({0xE4: "ae", 0xF6: "oe", 0xFC: "ue"}), plain]
+    return whole, whole.translate({0xE4: "ae", 0xF6: "oe", 0xFC: "ue"}), plain
 
 
-def _letters(text: str) -> set[str]:
+@cache
+def _letters(text: str) -> frozenset[str]:
     """Return the spellings without spaces and signs, as Canvas writes a name."""
-    return {"".join(filter(str.isalnum, spelling)) for spelling in _spellings(text)} - {""}
+    return frozenset({"".join(filter(str.isalnum, spelling)) for spelling in _spellings(text)} - {""})
 
 
 def _within(name: str, words: str) -> bool:
@@ -170,8 +173,10 @@ def _within(name: str, words: str) -> bool:
     >>> _within("ada", "ps1_Ada"), _within("ada", "adam"), _within("Jo Müller", "ps1-jo_mueller")
     (True, False, True)
     """
-    for spelled, among in zip(_spellings(name), _spellings(words), strict=True):
-        parts = [re.escape(part) for part in re.split(BETWEEN, spelled) if part]
-        if parts and re.search(rf"(?<![^\W_]){BETWEEN.join(parts)}(?![^\W_])", among):
-            return True
-    return False
+    return any(found and found.search(among) for found, among in zip(_patterns(name), _spellings(words), strict=True))
+
+
+@cache
+def _patterns(name: str) -> list[re.Pattern[str] | None]:
+    parts = [[re.escape(part) for part in re.split(BETWEEN, spelled) if part] for spelled in _spellings(name)]
+    return [re.compile(rf"(?<![^\W_]){BETWEEN.join(each)}(?![^\W_])") if each else None for each in parts]

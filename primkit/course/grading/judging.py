@@ -60,7 +60,9 @@ class Judging:
         self.ran: list[int] = []
 
     def outputs(self, name: str, cell: int, workers: Workers) -> list[Any]:
-        """Return what a graded cell shows; a busy machine's second try counts."""
+        """Return what a graded cell shows; a busy machine's second try counts. One of 0 points was dropped: nothing."""
+        if not _about(self.graded[name]).get("points"):
+            return []
         for tries in (1, 0):
             outputs, late = self._tried(name, cell, workers)
             if not (late and tries):

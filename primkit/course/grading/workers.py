@@ -87,7 +87,7 @@ class Workers:
         elif twin:
             with suppress(HungUpError):
                 say(twin, "work")
-        until = time.monotonic() + (GREETING_SECONDS if self.make or twin else 0.0)
+        until = time.monotonic() + (GREETING_SECONDS * busy() if self.make or twin else 0.0)
         while self.line is None and (left := until - time.monotonic()) > 0:
             if twin in select.select([self.here, *filter(None, [twin])], [], [], left)[0]:
                 break  # it has ended: it says nothing
@@ -98,11 +98,11 @@ class Workers:
 
     def meet(self, cell: int | None = None) -> None:
         """Take in who has called: twins, and a worker of this cell. Whoever greets in another way is a stranger."""
-        until = time.monotonic() + GREETING_SECONDS
+        until = time.monotonic() + GREETING_SECONDS * busy()
         while time.monotonic() < until and select.select([self.here], [], [], 0.0)[0]:
             line, greeting = self.here.accept()[0], []
             with suppress(HungUpError):
-                greeting = hear(line, watch=_hurry(STRANGER_SECONDS))
+                greeting = hear(line, watch=_hurry(STRANGER_SECONDS * busy()))
             if greeting == [cell, "worker"] and self.line is None:
                 self.line = line
             elif len(greeting) == 2 and greeting[1] == "twin" and isinstance(greeting[0], int):
@@ -150,11 +150,14 @@ class Workers:
         waited = time.monotonic() - self.began
         if waited < self.seconds:
             return
-        busy = psutil.getloadavg()[0] / (psutil.cpu_count() or 1)  # processes for each core
-        patience = PATIENCE * min(max(1.0, busy), MOST_BUSY)
-        if waited > patience * self.seconds or self.spent() - self.spent_before > self.seconds:
+        if waited > PATIENCE * busy() * self.seconds or self.spent() - self.spent_before > self.seconds:
             self._let_go()
             raise OutOfTime(f"did not end within {self.seconds:g} s")
+
+
+def busy() -> float:
+    """Return how many times as long as on an idle machine something may take: as many processes as want each core."""
+    return min(max(1.0, psutil.getloadavg()[0] / (psutil.cpu_count() or 1)), MOST_BUSY)
 
 
 def _hurry(seconds: float) -> Callable[[], None]:
