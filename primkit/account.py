@@ -34,6 +34,7 @@ from .robust.evidence import CERTAIN
 from .robust.outlines import LEAST_SIDE, Outlines
 from .robust.regroup import MOST_ACROSS
 from .robust.scatter import SIGMAS
+from .segmentation import LEAST_GROUP, link
 from .shapes import Polygon, Shape
 
 ROOM_ACROSS = 0.64  # m on cells of 1 mm, as all here: what is farther from corner to corner may be a room
@@ -133,6 +134,19 @@ def walls_among(choices: Sequence[Choice], n_shapes: int) -> list[Choice]:
     if len(choices) - len(no_shapes) >= n_shapes:
         return no_shapes
     return [choice for choice in no_shapes if np.hypot(*np.ptp(choice.points, axis=0)) > MOST_ACROSS]
+
+
+def beside_walls(choice: Choice) -> list[Floats]:
+    """Return the points of a room that lie on none of its walls, as groups: what stands near one was linked to it.
+
+    Some points of each lie where noise brings none from a wall.
+    """
+    if choice.shape is None or _room_of(choice, choice.shape) is None:
+        return []
+    beside, deep = choice.points[~choice.on_it], choice.inside[~choice.on_it]
+    labels = link(beside)
+    n_deep = np.bincount(labels[deep & (labels >= 0)])
+    return [beside[labels == k] for k in np.flatnonzero(n_deep >= LEAST_GROUP)]
 
 
 def _room_of(choice: Choice, shape: Shape) -> Outlines | None:

@@ -8,10 +8,9 @@ Out: ``Found``, a list of ``Detection``: each with its shape, its points, and ho
 >>> [d.shape for d in found]
 [Circle(center=(0.1, 0), radius=0.06)]
 
-Two settings. ``PAPER`` is the method as it was published: K-Means with the known number of shapes, one line
-after the other by RANSAC until a tenth of the points is left, the number of lines for a name, extents and
-means for measures. ``ROBUST``, the default, finds the number of shapes, fits all sides of a shape together, in
-any rotation, and lets the likelihood decide between circle and polygon.
+Two settings. ``PAPER`` is the method as it was published: K-Means with the known number, one line after the other by
+RANSAC until a tenth of the points is left, the number of lines for a name, extents and means for measures. ``ROBUST``,
+the default, finds the number of shapes, fits all sides together, and lets the likelihood decide what a shape is.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .account import Account, things_of, walls_among
+from .account import Account, beside_walls, things_of, walls_among
 from .arguments import Floats, Ints, Labels, as_count, as_points, as_positive, as_rng, check_type, doubt, short
 from .found import Found
 from .grid import Grid
@@ -283,7 +282,10 @@ def _jointly(
     opinion.work = sum(len(points) + WORK_OF_A_TRY for points in together)
     if settings.second_opinion if n_shapes is None else len(groups) != n_shapes:
         groups, margins = regrouped(groups, spread, explain=opinion)
-    if n_shapes is not None:
+    if n_shapes is None:
+        beside = [explain(points, spread) for group in groups for points in beside_walls(group)]
+        groups, margins = groups + beside, margins + [0.0] * len(beside)
+    else:
         walls = walls_among(groups, n_shapes)
         groups, margins = regrouped([g for g in groups if g not in walls], spread, n_shapes, explain=opinion)
         groups, margins = groups + walls, margins + [float("inf")] * len(walls)
@@ -325,9 +327,7 @@ def _in_steps(spread: float) -> float:
 def _spread_of_fits(groups: list[Choice]) -> float | None:
     """Return how far the points lie from the shapes that explain them; None without shapes."""
     distances = [g.distance for g in groups if g.shape is not None]
-    if not distances:
-        return None
-    return spread_from_median(float(np.median(np.abs(np.concatenate(distances)))))
+    return spread_from_median(float(np.median(np.abs(np.concatenate(distances))))) if distances else None
 
 
 def _as_published(

@@ -66,6 +66,19 @@ def test_the_walls_around_a_board_are_four_walls(seed):
         assert wall.ends_seen == (True, True)
 
 
+def test_a_box_that_stands_close_to_a_wall_is_found_beside_it():
+    """It is linked to the room, and none of its walls has its points: they were strays."""
+    box = pk.Polygon([(0.35, 0.06), (0.495, 0.06), (0.495, 0.14), (0.35, 0.14)])
+    poses = [(x, y, 0.0) for x in (-0.3, 0.0, 0.25) for y in (-0.3, 0.0, 0.3)]
+    grid = pk.Grid()
+    grid.add(pk.scan(pk.World([box], walls=True), poses, pk.Lidar(beams=360, range_max=2.0, noise_std=0.01), rng=0))
+    found = pk.find_shapes(grid, rng=0)
+    assert len(found.walls) == 4
+    (one,) = found
+    assert not one.certain
+    assert np.hypot(*(one.shape.centroid - box.centroid)) < 0.03
+
+
 def test_a_room_on_larger_cells_is_walls_and_the_pillars_in_it_are_found():
     """An L-shaped room of 8 m, cells of 1 cm, noise of 1 cm."""
     corners = np.array([(0, 0), (8, 0), (8, 4), (4, 4), (4, 8), (0, 8)])
