@@ -23,6 +23,7 @@ from .cells import occupy, to_cells
 from .driving import drive_step, share_seen
 from .edges import fit_line, inliers_of, line_through, ransac_line
 from .groups import assign_points, silhouette, update_centers
+from .layers import nearest_to, plane_through, sphere_through
 from .naming import fair_choice, meet, sides_and_centroid
 from .poses import clean_ranges, newton_step, wall_residuals
 from .rays import ray_circle, ray_segment
@@ -43,6 +44,7 @@ __all__ += [
     "wall_residuals",
     "newton_step",
 ]
+__all__ += ["plane_through", "sphere_through", "nearest_to"]
 __all__ += ["Answer", "Check", "Fault", "TASKS"]
 
 # Every task of the course, in its order: tests hold each of them against tests/answers.

@@ -27,9 +27,9 @@ w^m; but a patch that is small against the noise says little about what it lies 
 
 Sources: Toth and Hajder (2019), "Robust fitting of geometric primitives on LiDAR data", of which only the abstract was
 at hand: that the others are the k nearest is how the first author's later code for spheres has it; nearest points for
-planes and cylinders are our reading. The algebraic sphere: Coope (1993), "Circle fitting by linear and nonlinear least
-squares"; the axis as the direction that normals avoid: Chaperon and Goulette (2001), "Extracting cylinders in full 3D
-data using a random sampling method and the Gaussian image".
+planes and cylinders are our reading. The algebraic sphere: Taubin (1991), "Estimation of planar curves, surfaces, and
+nonplanar space curves"; the axis as the direction that normals avoid: Chaperon and Goulette (2001), "Extracting
+cylinders in full 3D data using a random sampling method and the Gaussian image".
 """
 
 from __future__ import annotations
@@ -79,15 +79,22 @@ def planes_through(samples: Floats) -> Floats:
 
 
 def spheres_through(samples: Floats) -> Floats:
-    """Return the algebraic sphere through each sample, (T, m, 3) -> (T, 4); NaN where points lie in a plane.
+    """Return Taubin's sphere through each sample, (T, m, 3) -> (T, 4); NaN where points lie in a plane.
 
-    ``|p|^2 = 2 c . p + (r^2 - |c|^2)`` is linear in c and in the bracket.
+    With x from the points' middle and s the mean of ``|x|^2``: the least sum of ``(A (|x|^2 - s) + b . x)^2`` of all
+    with ``4 A^2 s + |b|^2 = 1``. With A = 1 instead (Coope's) a small patch is taken for a far too small sphere.
     """
     middle = samples.mean(axis=1)
     x = samples - middle[:, None]
-    squares = (x**2).sum(axis=2)
-    c = _solve(2 * _products(x), (x * (squares - squares.mean(axis=1, keepdims=True))[:, :, None]).sum(axis=1))
-    return np.column_stack([middle + c, np.sqrt(squares.mean(axis=1) + (c**2).sum(axis=1))])
+    squares = (x**2).sum(axis=2, keepdims=True)
+    s = squares.mean(axis=1)
+    scale = 2 * np.sqrt(np.maximum(s, np.finfo(float).tiny))[:, None]
+    terms = np.concatenate([(squares - s[:, None]) / scale, x], axis=2)
+    values, vectors = np.linalg.eigh(_products(terms))
+    a, b = vectors[:, :1, 0], vectors[:, 1:, 0]
+    sound = (np.abs(a) > FLATTEST) & (values[:, 1:2] > FLATTEST**2 * values[:, 3:])
+    c = -b * np.sqrt(s) / np.where(sound, a, np.nan)
+    return np.column_stack([middle + c, np.sqrt(s + (c**2).sum(axis=1, keepdims=True))])
 
 
 def cylinders_through(samples: Floats) -> Floats:

@@ -19,6 +19,7 @@ from .boards import boards
 from .cells import cells
 from .edges import edges, show_lines
 from .groups import groups
+from .layers import layers
 from .naming import fit_each_kind, naming
 from .poses import poses, show_maps
 from .predictions import answer, guesses, predict, read_quiz
@@ -29,8 +30,9 @@ from .svg import what_it_says
 from .wheels import wheels
 
 # The lessons' sliders, in the order of the lessons: tests move each of them to all corners of its box.
-SLIDERS = (boards, rays, cells, groups, edges, arcs, naming, scoring, wheels, poses)
+SLIDERS = (boards, rays, cells, groups, edges, arcs, naming, scoring, wheels, poses, layers)
 
 __all__ = ["boards", "rays", "cells", "groups", "edges", "arcs", "naming", "scoring", "wheels", "poses", "SLIDERS"]
 __all__ += ["show_lines", "show_circles", "fit_each_kind", "explore", "Explorer", "Slider", "Choice", "what_it_says"]
+__all__ += ["layers"]
 __all__ += ["predict", "answer", "guesses", "read_quiz", "show_maps"]

@@ -6,12 +6,14 @@ With those in ``lesson_NN.py``, the reference, and the plain way of ``tests/slip
 
 import bisect
 import cmath
+import heapq
 import itertools
 import math
 from collections import Counter, defaultdict
 from functools import reduce
 
 import numpy as np
+import numpy.linalg as linalg_np
 from scipy import ndimage, optimize, spatial
 from scipy.linalg import lstsq as linalg_lstsq
 from scipy.linalg import null_space
@@ -853,6 +855,92 @@ def step_by_complex_numbers(guess, hits, normals, offsets):
     return guess - np.linalg.pinv(np.transpose(columns)) @ off_by_tensor(guess, hits, normals, offsets)
 
 
+# --- 11: layers -------------------------------------------------------------------------------------------------
+
+
+def plane_from(normal_of):
+    """A plane by a normal of any length, of the ways from the first point to the others."""
+
+    def through(points):
+        n = np.asarray(normal_of(points[1] - points[0], points[2] - points[0]))
+        length = math.sqrt(n @ n)
+        return (n / length, points[0] @ n / length) if length > 1e-9 else None
+
+    return through
+
+
+def plane_by_null_space(points):
+    free = null_space(np.column_stack([points, -np.ones(3)]), rcond=1e-9)
+    return (
+        None
+        if free.shape[1] > 1
+        else (free[:3, 0] / np.hypot.reduce(free[:3, 0]), free[3, 0] / linalg_np.norm(free[:3]))
+    )
+
+
+def plane_by_eigenvectors(points):
+    middle = points.sum(axis=0) / 3
+    sizes, axes = linalg_np.eigh((points - middle).T @ (points - middle))
+    return (axes[:, 0], middle @ axes[:, 0]) if sizes[1] > 1e-12 * sizes[2] else None
+
+
+def normal_by_gram_schmidt(u, v):
+    u = u / linalg_np.norm(u)
+    v = v - (v @ u) * u
+    return np.cross(u, v)
+
+
+def normal_by_qr(u, v):
+    q, r = linalg_np.qr(np.column_stack([u, v]), mode="complete")
+    return q[:, 2] * (abs(r[1, 1]) > 1e-9)
+
+
+def normal_by_minors(u, v):
+    return [(-1) ** k * linalg_np.det(np.delete([u, v], k, axis=1)) for k in range(3)]
+
+
+def normal_by_skew_matrix(u, v):
+    return np.array([(0, -u[2], u[1]), (u[2], 0, -u[0]), (-u[1], u[0], 0)]) @ v
+
+
+def sphere_from(solve):
+    """An algebraic sphere, by a way to solve the equations of least squares."""
+
+    def through(points):
+        matrix = np.hstack([2 * points, np.ones((len(points), 1))])
+        *c, s = solve(matrix, np.einsum("ij,ij->i", points, points))
+        return tuple(map(float, c)), math.sqrt(s + sum(x * x for x in c))
+
+    return through
+
+
+def by_cramer(m, right):
+    a, b = m.T @ m, m.T @ right
+    return [linalg_np.det(np.column_stack([a[:, :k], b, a[:, k + 1 :]])) / linalg_np.det(a) for k in range(4)]
+
+
+def nearest_one_by_one(points, seed, k):
+    far, found = np.sum((points - points[seed]) ** 2, axis=1), []
+    for _ in range(k + 1):
+        found.append(int(np.argmin(far)))
+        far[found[-1]] = INF
+    return found
+
+
+def nearest_within_the_kth(points, seed, k):
+    far = spatial.distance.cdist(points[[seed]], points)[0]
+    return np.flatnonzero(far <= np.sort(far)[k])
+
+
+def nearest_by_a_heap(points, seed, k):
+    return heapq.nsmallest(k + 1, range(len(points)), lambda i: math.dist(points[i], points[seed]))
+
+
+def nearest_by_ranks(points, seed, k):
+    place = np.argsort(np.argsort(pairwise_distances(points)[seed]))
+    return [i for i, rank in enumerate(place) if rank <= k]
+
+
 WAYS = {
     "ray_segment": {
         "plain": segment_in_plain_python,
@@ -1001,5 +1089,29 @@ WAYS = {
         "eigenvectors": stepped_by(by_eigenvectors),
         "as the robot sees it": step_as_the_robot_sees_it,
         "complex numbers": step_by_complex_numbers,
+    },
+    "plane_through": {
+        "null space": plane_by_null_space,
+        "eigenvectors": plane_by_eigenvectors,
+        "Gram and Schmidt": plane_from(normal_by_gram_schmidt),
+        "QR": plane_from(normal_by_qr),
+        "minors": plane_from(normal_by_minors),
+        "skew matrix": plane_from(normal_by_skew_matrix),
+    },
+    "sphere_through": {
+        "normal equations": sphere_from(lambda m, right: linalg_np.solve(m.T @ m, m.T @ right)),
+        "QR": sphere_from(lambda m, right: linalg_np.solve(linalg_np.qr(m)[1], linalg_np.qr(m)[0].T @ right)),
+        "pseudo-inverse": sphere_from(lambda m, right: linalg_np.pinv(m) @ right),
+        "regression": sphere_from(lambda m, right: LinearRegression(fit_intercept=False).fit(m, right).coef_),
+        "scipy": sphere_from(lambda m, right: linalg_lstsq(m, right)[0]),
+        "Cramer": sphere_from(by_cramer),
+    },
+    "nearest_to": {
+        "one by one": nearest_one_by_one,
+        "within the k-th": nearest_within_the_kth,
+        "tree": lambda points, seed, k: spatial.cKDTree(points).query(points[seed], list(range(1, k + 2)))[1],
+        "heap": nearest_by_a_heap,
+        "neighbours": lambda p, seed, k: NearestNeighbors(n_neighbors=k + 1).fit(p).kneighbors(p[[seed]])[1][0],
+        "ranks": nearest_by_ranks,
     },
 }

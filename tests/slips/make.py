@@ -55,6 +55,8 @@ EQUIVALENT = {
     "hexagon_corners, comparison 1": "the place inside lies on no side",
     "overlap_score, order 4": "intersection and union have no order",
     "parts, order 1": "errors are right on both sides alike, and turning the one list is turning the other back",
+    "plane_through, order 1": "a plane has its three points in any order",
+    "nearest_to, order 1": "differences are squared",
 }
 
 

@@ -268,3 +268,28 @@ def newton_step(guess, hits, normals, offsets):
     jacobian = np.stack([normals[:, 0], normals[:, 1], turn], axis=1)
     step = np.linalg.lstsq(jacobian, off, rcond=None)[0]
     return guess - step
+
+
+def plane_through(points):
+    a, b, c = points
+    normal = np.cross(b - a, c - a)
+    length = np.linalg.norm(normal)
+    if length == 0:
+        return None
+    normal = normal / length
+    return normal, np.dot(normal, a)
+
+
+def sphere_through(points):
+    matrix = np.ones((len(points), 4))
+    matrix[:, :3] = 2 * points
+    squares = np.sum(points**2, axis=1)
+    solution = np.linalg.lstsq(matrix, squares, rcond=None)[0]
+    center = solution[:3]
+    return center, np.sqrt(solution[3] + np.sum(center**2))
+
+
+def nearest_to(points, seed, k):
+    difference = points - points[seed]
+    distance = np.sqrt(np.sum(difference**2, axis=1))
+    return np.argsort(distance)[: k + 1]
