@@ -19,7 +19,7 @@ from ..palette import BLUE, GREY, INK, ORANGE, VERMILION
 from ..space import Cylinder, Lidar3d, Scene, Sphere, scan
 from ..space.solids import Solid
 from ..table import count
-from .drawing import Frame, picture
+from .drawing import Frame, idea_frame, picture
 from .slider import Choice, Explorer, Picture, Slider, explore
 
 BALL_RADIUS, FIRST_HEIGHT, LAYER_STEP, LAYERS = 0.3, 0.1, 0.05, 10  # m; the ball lies on the ground
@@ -101,7 +101,7 @@ def draw_layers(what: str, layers: int, turned: float) -> str:
 
 def draw_slices() -> Picture:
     """Return the drawing behind the lesson's formula: a ball and a post, cut at two heights, from the side."""
-    frame = Frame((-0.4, 1.0), (-0.08, 0.72), "across [m]", "height [m]", width=600, height=375)
+    frame = idea_frame((-0.4, 1.0), (-0.08, 0.72), 600)
     ball, post, heights = np.array([0.0, BALL_RADIUS]), 0.7, (FIRST_HEIGHT, 0.2)
     rims = [float(np.sqrt(BALL_RADIUS**2 - (h - BALL_RADIUS) ** 2)) for h in heights]
     lows = [(0.0, h) for h in heights] + [(post, h) for h in heights]
