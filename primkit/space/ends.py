@@ -86,10 +86,13 @@ def end_of(solid: Solid, k: int, beams: Beams, ground: Plane | None) -> End:
     look = FINEST_END * (FARTHEST_END / FINEST_END) ** (np.arange(LOOK_STEPS) / (LOOK_STEPS - 1))
     steps = np.unique(np.clip(np.concatenate([-look, [0.0], look]), least, most))
     value = log_likelihoods(ranges(steps, changing), told).sum(axis=1)
+    which = np.flatnonzero(changing)
     for _ in range(ZOOMS):
         likely = np.flatnonzero(value > value.max() - UNLIKELY)
         steps = np.linspace(steps[max(likely[0] - 1, 0)], steps[min(likely[-1] + 1, len(steps) - 1)], FINE_STEPS)
-        value = log_likelihoods(ranges(steps, changing), told).sum(axis=1)
+        nearest, farthest = ranges(steps[[-1, 0]], which)
+        which = which[nearest != farthest]  # the others say the same of all these steps
+        value = log_likelihoods(ranges(steps, which), beams[which]).sum(axis=1)
     p = np.exp(value - value.max())
     inside = steps[p > np.exp(-UNLIKELY)].tolist()
     if most == contact and inside[-1] == most and ground is not None:
