@@ -8,11 +8,12 @@ import pytest
 from primkit import space
 from primkit.ransac import run_ransac, trials_needed
 from primkit.space.along_beam import linearised
-from primkit.space.ends import end_of
+from primkit.space.ends import End, end_of, lowest_point
+from primkit.space.explanations import told_by_ends
 from primkit.space.finding import Sight
 from primkit.space.ground import find_ground, groups
 from primkit.space.lidar3d import beams
-from primkit.space.scenes import shifted
+from primkit.space.scenes import UP, shifted
 from primkit.space.solids import UNIT, hit
 
 AROUND = [
@@ -174,6 +175,22 @@ def test_misses_alone_bound_a_height():
     assert end_of(post, 6, own, None).unbounded
     assert not end_of(post, 6, sight.around(members), None).unbounded
     assert blind.shape == cloud.ranges.shape
+
+
+@pytest.mark.parametrize("solid", SOLIDS[1:], ids=lambda solid: solid.kind)
+def test_the_lowest_point_goes_down_as_each_number_says(solid):
+    slope = lowest_point(solid, -UP)
+    for k, step in enumerate(1e-6 * np.eye(solid.numbers)):
+        lower, higher = (s.center[2] - s.reach(UP) for s in (solid.moved(step), solid.moved(-step)))
+        assert (higher - lower) / 2e-6 == pytest.approx(slope[k], abs=1e-5)
+
+
+def test_ranges_want_nothing_where_an_end_has_left_them():
+    """They err by 0.05 mm: an end that moves by as much they pull back, one that moves by 3 mm they do not."""
+    by_ranges = np.full(7, 1 / 5e-5**2)
+    for growth, pulled in ((5e-5, True), (3e-3, False)):
+        pulls = told_by_ends({6: End(growth, 4e-5, (0, 0.01), np.eye(7)[6])}, by_ranges)
+        assert (pulls.at[0] > 0) == pulled
 
 
 def test_a_scene_without_a_ground_in_sight():

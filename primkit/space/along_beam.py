@@ -25,11 +25,8 @@ from .solids import Solid, hit
 NOWHERE_SHARE, NOWHERE_DENSITY = 0.05, 0.2  # of a group's returns; and per metre
 ON_IT = 4.0  # standard deviations: a return that is so near to where the solid is met says nothing against it
 STEEPEST = 50.0  # m of range per m across: what grazes more tells nothing that is linear
-ROUNDS, DAMPINGS, SETTLED_GAIN = (
-    25,
-    6,
-    1e-3,
-)  # of Gauss and Newton's, and shorter steps in each; gain in log likelihood below which they end
+ROUNDS, DAMPINGS = 25, 6  # of Gauss and Newton's, and shorter steps in each
+SETTLED_GAIN = 1e-3  # in log likelihood: less ends them
 SOFT = 100.0  # 1 / m^2: what no beam tells is held by this much, so that no step is without end
 LARGEST_SOLID = 10.0  # m: a larger solid is none of these
 
@@ -62,14 +59,13 @@ class Beams:
 
 def log_likelihoods(t: Floats, beams: Beams) -> Floats:
     """Return what each beam says of a solid that it would meet at range t, shape (..., N), up to a constant."""
-    s = beams.noise_std
+    s, own = beams.noise_std, beams.own
     peak = 1 / (np.sqrt(2 * np.pi) * s)
-    with np.errstate(invalid="ignore"):
-        gap = (beams.ranges - t) / s
-        near = (1 - NOWHERE_SHARE) * peak * np.exp(-0.5 * np.minimum(gap * gap, 1e3))
-        returned = np.log(near + NOWHERE_SHARE * NOWHERE_DENSITY)
-    missed = np.log(NOWHERE_SHARE * NOWHERE_DENSITY / peak)
-    return np.where(beams.own, returned, np.where(beams.ranges - ON_IT * s > t, missed, 0.0))
+    said = np.where(beams.ranges - ON_IT * s > t, np.log(NOWHERE_SHARE * NOWHERE_DENSITY / peak), 0.0)
+    gap = (beams.ranges[own] - t[..., own]) / s
+    near = (1 - NOWHERE_SHARE) * peak * np.exp(-0.5 * np.minimum(gap * gap, 1e3))
+    said[..., own] = np.log(near + NOWHERE_SHARE * NOWHERE_DENSITY)
+    return said
 
 
 def likelihood(solid: Solid, beams: Beams) -> float:

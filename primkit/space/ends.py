@@ -20,11 +20,8 @@ from .solids import Plane, Solid, first_of
 
 FAR_OUT, MOST_LESS = 100.0, 0.95  # m: so far out an end is what is nearest; share of a size that may be taken away
 FIRST_END = {"sphere": 4, "cylinder": 5, "box": 3}  # of a solid's numbers; the low ends stand before the high ones
-FARTHEST_END, FACES_GROUND, NEARLY_LEVEL = (
-    0.6,
-    0.05,
-    0.9998,
-)  # m from where it is supposed; cosines of an end's slope: it faces the ground at all, it is level
+FARTHEST_END = 0.6  # m from where it is supposed
+FACES_GROUND, NEARLY_LEVEL = 0.05, 0.9998  # cosines of an end's slope: it faces the ground at all, it is level
 FINEST_END, LOOK_STEPS = 1e-4, 16  # m; steps to each side, each longer by the same factor
 FINE_STEPS, ZOOMS = 33, 2
 UNLIKELY = 9.0  # in log likelihood below the best: out of question
@@ -89,13 +86,17 @@ def end_of(solid: Solid, k: int, beams: Beams, ground: Plane | None) -> End:
     look = FINEST_END * (FARTHEST_END / FINEST_END) ** (np.arange(LOOK_STEPS) / (LOOK_STEPS - 1))
     steps = np.unique(np.clip(np.concatenate([-look, [0.0], look]), least, most))
     value = log_likelihoods(ranges(steps, changing), told).sum(axis=1)
+    which = np.flatnonzero(changing)
     for _ in range(ZOOMS):
         likely = np.flatnonzero(value > value.max() - UNLIKELY)
         steps = np.linspace(steps[max(likely[0] - 1, 0)], steps[min(likely[-1] + 1, len(steps) - 1)], FINE_STEPS)
-        value = log_likelihoods(ranges(steps, changing), told).sum(axis=1)
+        nearest, farthest = ranges(steps[[-1, 0]], which)
+        which = which[nearest != farthest]  # the others say the same of all these steps
+        value = log_likelihoods(ranges(steps, which), beams[which]).sum(axis=1)
     p = np.exp(value - value.max())
     inside = steps[p > np.exp(-UNLIKELY)].tolist()
-    if most == contact and inside[-1] == most:
+    if most == contact and inside[-1] == most and ground is not None:
+        slope = slope if -normal @ ground.normal > NEARLY_LEVEL else lowest_point(solid, -ground.normal)
         return End(most, 0.0, (inside[0], most), slope, on_ground=True)
     p /= p.sum()
     mean = float(p @ steps)
@@ -120,3 +121,14 @@ def to_ground(solid: Solid, normal: Floats, ground: Plane) -> float:
         return np.inf
     reach = float(np.abs(solid.frame @ normal) @ solid.half) if down > NEARLY_LEVEL else solid.reach(ground.normal)
     return (float(ground.signed_distance(solid.center[None])[0]) - reach) / down
+
+
+def lowest_point(solid: Solid, down: Floats) -> Floats:
+    """Return by how much the point of a cylinder or box that lies farthest down goes down as each number grows."""
+    c = solid.frame @ down
+    ways = np.diag(c) if solid.kind == "box" else np.array([[c[0], c[1], 0.0], [0.0, 0.0, c[2]]])
+    shares = np.linalg.norm(ways, axis=1)
+    normals = ways / np.maximum(shares, np.finfo(float).tiny)[:, None]  # of the faces that meet there, outwards
+    beyond = (normals * solid.half).sum(axis=0) + FAR_OUT * normals
+    slope: Floats = shares @ solid.speeds(solid.center + beyond @ solid.frame)[1]
+    return slope

@@ -16,14 +16,13 @@ import numpy as np
 
 from ..arguments import Floats
 from .along_beam import ON_IT, Beams, Pulls, information, likelihood, refine
-from .ends import FIRST_END, End, end_of, grown, outward
+from .ends import FIRST_END, UNLIKELY, End, end_of, grown, outward
 from .solids import Plane, Solid, hit
 from .starts import ENOUGH, REACHES, misfit, starts
 
 FAR_BEHIND = 100.0  # in log likelihood of the starts: what is farther behind the best is not looked at again
 LOOKS_AT_ENDS = 2
 PERFECT, MOST_MISSED = 0.9, 0.03  # shares of a group's returns: explained at least, and passed through at most
-NEAR_END = 0.02  # m: an end that moves by more has left the returns that it was fitted to
 SUREST = 1e-5  # m: no end is known better
 PRIOR_PULL = 1e-6  # 1 / m^2: keeps what nothing tells from being infinite
 
@@ -73,7 +72,7 @@ def explained(solid: Solid, beams: Beams, ground: Plane | None) -> Explanation:
         for k in range(FIRST_END[solid.kind], solid.numbers):
             ends[k] = end_of(solid, k, beams, ground)
             solid = solid.moved(ends[k].growth * outward(solid, k) * np.eye(solid.numbers)[k])
-        pulls = _told_by_ends(ends, np.diag(information(solid, beams)))
+        pulls = told_by_ends(ends, np.diag(information(solid, beams)))
         solid, told = refine(solid, beams, pulls), pulls.matrix() if pulls else told
     known = information(solid, beams) + told + PRIOR_PULL * np.eye(solid.numbers)
     covariance = np.asarray(np.linalg.inv(known), dtype=float)
@@ -86,20 +85,21 @@ def explained(solid: Solid, beams: Beams, ground: Plane | None) -> Explanation:
     return Explanation(solid, evidence, covariance, ends, on_it / n, missed / n)
 
 
-def _told_by_ends(ends: dict[int, End], by_ranges: Floats) -> Pulls | None:
+def told_by_ends(ends: dict[int, End], by_ranges: Floats) -> Pulls | None:
     """Return where hits and misses want each end, from where it is now; None without ends.
 
     The sum over an end, of mean m and variance v, knows the ranges and the hits and misses. The ranges, with
     information i, want the end where it was, m away from here; so hits and misses add p = 1 / v - i, and want
-    m / (v p) - m.
+    m / (v p) - m. Where m is farther than the ranges could err, the end has left the returns that it was fitted to, and
+    the ranges want nothing there.
     """
     rows = list[tuple[Floats, float, float]]()
     for k, end in ends.items():
         precision = 1 / max(end.std, SUREST) ** 2
         more = precision - by_ranges[k]
         if more > 0.05 * by_ranges[k]:
-            near = abs(end.growth) < NEAR_END
-            rows.append((end.slope, end.growth * (precision / more - 1) if near else 0.0, more))
+            believed = by_ranges[k] * end.growth**2 < UNLIKELY
+            rows.append((end.slope, end.growth * (precision / more - 1) if believed else 0.0, more))
     if not rows:
         return None
     slopes, at, more_of_all = zip(*rows, strict=True)

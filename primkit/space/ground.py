@@ -33,10 +33,7 @@ from .solids import Plane
 GROUND_SAMPLE, GROUND_EVERY, GROUND_TRIALS, GROUND_ROUNDS = 12_000, 8, 100, 4  # returns; every so many for the trials
 GROUND_REACH, LEVEL_ENOUGH, LEAST_GROUND = 0.03, 0.9, 50  # m; cosine of the slope; returns
 ON_GROUND = 5.0  # standard deviations along the beam
-USUAL_NOISE, LEAST_RANGE_NOISE = (
-    0.01,
-    1e-4,
-)  # m: of ranges, until the ground tells; and so that nothing is divided by zero
+USUAL_NOISE, LEAST_RANGE_NOISE = 0.01, 1e-4  # m: until the ground tells; so that nothing is divided by zero
 NEAR_BESIDE, BEAMS_BESIDE = 0.1, 2  # m, beams: a return is no stray when one of so many to each side hit as near to it
 LINK_CELL, APART = 0.03, 0.15  # m: returns are put into cells, and cells so far apart are linked
 LEAST_RETURNS = 20  # of a group

@@ -19,18 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arguments import (
-    Bools,
-    Floats,
-    as_count,
-    as_floats,
-    as_points,
-    as_positive,
-    as_rng,
-    as_share,
-    check_type,
-    limit,
-)
+from ..arguments import Bools, Floats, as_count, as_floats, as_points, as_positive, as_rng, as_share, check_type, limit
 from .scenes import Scene
 
 MOST_BEAMS_OF_ALL = 20_000_000  # in a cloud: 160 MB of ranges

@@ -11,6 +11,7 @@ Out: a ``Scene``: solids that do not touch, over the plane z = 0.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,11 +64,7 @@ def within(center: Floats, reach: float, origin: Floats, directions: Floats) -> 
 
 
 def random_scene(
-    n_solids: int = 4,
-    *,
-    half: float = 2.2,
-    gap: float = 0.15,
-    rng: int | np.random.Generator | None = None,
+    n_solids: int = 4, *, half: float = 2.2, gap: float = 0.15, rng: int | np.random.Generator | None = None
 ) -> Scene:
     """Return a scene of solids of random kind, size and place that do not touch.
 
@@ -82,12 +79,8 @@ def random_scene(
         Seen from above, so many metres are free between the circles around two solids.
     rng : seed or numpy.random.Generator, optional
     """
-    n_solids, half, gap = (
-        as_count(n_solids, "n_solids", 0),
-        as_positive(half, "half"),
-        as_positive(gap, "gap", zero=True),
-    )
-    rng = as_rng(rng)
+    n_solids, half = as_count(n_solids, "n_solids", 0), as_positive(half, "half")
+    gap, rng = as_positive(gap, "gap", zero=True), as_rng(rng)
     solids = list[Solid]()
     tries = 0
     while len(solids) < n_solids:
@@ -121,18 +114,13 @@ def _random_solid(rng: np.random.Generator, place: Floats) -> Solid:
 
 def shifted(solid: Solid, by: Floats) -> Solid:
     """Return the solid shifted by a vector, shape (3,), metres."""
-    center = solid.center + by
-    if isinstance(solid, Sphere):
-        return Sphere(center, solid.radius)
-    if isinstance(solid, Cylinder):
-        return Cylinder(center, solid.axis, solid.radius, solid.height)
-    return Box(center, solid.frame, solid.size)
+    moved = copy(solid)
+    vars(moved).update(center=solid.center + by)
+    return moved
 
 
 def _reach(solid: Solid) -> float:
     """Return the radius of a circle around the solid, seen from above, metres."""
-    return (
-        float(np.linalg.norm((solid.frame.T * solid.half)[:2], axis=1) @ [1, 1])
-        if solid.kind == "box"
-        else float(np.linalg.norm(solid.half))
-    )
+    if solid.kind == "box":
+        return float(np.linalg.norm((solid.frame.T * solid.half)[:2], axis=1).sum())
+    return float(np.linalg.norm(solid.half))

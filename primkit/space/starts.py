@@ -122,14 +122,8 @@ def _box(points: Floats, planes: list[tuple[Floats, Floats]], noise_std: float) 
     low, high = np.percentile(x, [OUTERMOST, 100 - OUTERMOST], axis=1)
     off = np.abs(np.maximum(low[:, None] - x, x - high[:, None]).max(axis=2))
     best = np.argsort((np.minimum(off, REACHES[0]) ** 2).mean(axis=1))[:BEST_TURNS]
-    begun = [
-        drawn(
-            Box((low[k] + high[k]) / 2 @ frames[k], frames[k], np.maximum(high[k] - low[k], noise_std)),
-            points,
-            noise_std,
-        )
-        for k in best
-    ]
+    boxes = [Box((low[k] + high[k]) / 2 @ (f := frames[k]), f, np.maximum(high[k] - low[k], noise_std)) for k in best]
+    begun = [drawn(box, points, noise_std) for box in boxes]
     return min(begun, key=lambda solid: misfit(solid, points, REACHES[-1]))
 
 
