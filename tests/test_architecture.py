@@ -56,7 +56,7 @@ KNOWS_NO = {"widgets": ("plots",), "scene": ("plots", "widgets"), "checks": ("pl
 KNOWN_TO = {
     "course": ("commands",),
     "space": (),
-    "parts": (),
+    "parts": ("widgets",),  # the slider of its lesson
     "widgets": (),
     "scene": (),
     "checks": ("course",),

@@ -34,7 +34,7 @@ LIMITS = ("timeout", "seconds", "megabytes")  # of a course's submissions
 
 def test_the_pack_is_whole():
     assert {"README.md", "assignments.md", "running.md", "untrusted_code.md", "accessibility.md"} <= set(PAGES)
-    assert set(LESSONS) == {f"lessons/{number:02d}.md" for number in range(12)}
+    assert set(LESSONS) == {f"lessons/{number:02d}.md" for number in range(13)}
 
 
 @pytest.mark.parametrize("name", PAGES)
@@ -342,9 +342,9 @@ def test_the_table_of_lessons_says_what_their_pages_say():
         assert (PACK / link).resolve() == notebook_of(number).resolve()
 
 
-def test_eleven_sessions_of_ninety_minutes_hold_every_lesson():
+def test_twelve_sessions_of_ninety_minutes_hold_every_lesson():
     rows = re.findall(r"^\| (\d+) \| ([\d +]+) \| (.+) \|$", PAGES["README.md"], re.MULTILINE)
-    assert [int(number) for number, *_ in rows] == list(range(1, 12))
+    assert [int(number) for number, *_ in rows] == list(range(1, 13))
     taught = []
     for _, minutes, what in rows:
         parts = dict(zip(what.split("; "), map(int, minutes.split(" + ")), strict=True))

@@ -20,6 +20,7 @@ A lesson's tasks lie in a module of their own: their reference, cases and usual 
 from .answer import Answer, Check, Fault
 from .arcs import circle_rms, fit_circle
 from .cells import occupy, to_cells
+from .composites import camera_columns, fewest_parts
 from .driving import drive_step, share_seen
 from .edges import fit_line, inliers_of, line_through, ransac_line
 from .groups import assign_points, silhouette, update_centers
@@ -45,6 +46,7 @@ __all__ += [
     "newton_step",
 ]
 __all__ += ["plane_through", "sphere_through", "nearest_to"]
+__all__ += ["fewest_parts", "camera_columns"]
 __all__ += ["Answer", "Check", "Fault", "TASKS"]
 
 # Every task of the course, in its order: tests hold each of them against tests/answers.

@@ -17,6 +17,7 @@ Out: an ``Explorer``; its ``draw(**values)`` returns the picture as SVG text.
 from .arcs import arcs, show_circles
 from .boards import boards
 from .cells import cells
+from .composites import composites, show_apart
 from .edges import edges, show_lines
 from .groups import groups
 from .layers import layers
@@ -30,9 +31,9 @@ from .svg import what_it_says
 from .wheels import wheels
 
 # The lessons' sliders, in the order of the lessons: tests move each of them to all corners of its box.
-SLIDERS = (boards, rays, cells, groups, edges, arcs, naming, scoring, wheels, poses, layers)
+SLIDERS = (boards, rays, cells, groups, edges, arcs, naming, scoring, wheels, poses, layers, composites)
 
 __all__ = ["boards", "rays", "cells", "groups", "edges", "arcs", "naming", "scoring", "wheels", "poses", "SLIDERS"]
 __all__ += ["show_lines", "show_circles", "fit_each_kind", "explore", "Explorer", "Slider", "Choice", "what_it_says"]
-__all__ += ["layers"]
+__all__ += ["layers", "composites", "show_apart"]
 __all__ += ["predict", "answer", "guesses", "read_quiz", "show_maps"]

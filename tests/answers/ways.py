@@ -941,6 +941,124 @@ def nearest_by_ranks(points, seed, k):
     return [i for i, rank in enumerate(place) if rank <= k]
 
 
+# --- 12: composites -----------------------------------------------------------------------------------------------
+
+
+def fewest_by_integers(claims):
+    """A part as the bits of a whole number."""
+    full, bits = 2 ** claims.shape[1] - 1, [int("".join(map(str, row.astype(int))), 2) for row in claims]
+    good = [s for s in range(1, 2 ** len(bits)) if reduce(lambda a, b: a | b, on(bits, s)) == full]
+    least = min((s.bit_count() for s in good), default=0)
+    return [list(on(range(len(bits)), s)) for s in good if s.bit_count() == least]
+
+
+def on(values, mask):
+    return [value for k, value in enumerate(values) if mask >> k & 1]
+
+
+def fewest_by_growing(claims):
+    """Sets grow by a part each, all of them at once."""
+    layer = {frozenset()}
+    while layer:
+        if done := [s for s in layer if claims[sorted(s)].any(axis=0).all()]:
+            return done
+        layer = {s | {i} for s in layer for i in range(len(claims)) if i not in s}
+    return []
+
+
+def fewest_by_branching(claims):
+    """Some part of each set claims the first place that is left."""
+
+    def branch(some, left, most):
+        if not left.any():
+            return [some]
+        if len(some) == most:
+            return []
+        first = left.argmax()
+        return [s for i in np.flatnonzero(claims[:, first]) for s in branch(some | {int(i)}, left & ~claims[i], most)]
+
+    all_of_it = np.ones(claims.shape[1], dtype=bool)
+    tries = (set(map(frozenset, branch(frozenset(), all_of_it, most))) for most in range(1, len(claims) + 1))
+    return next(filter(None, tries), set())
+
+
+def fewest_by_taking_away(claims):
+    """From all parts downwards, as long as something can be left out."""
+    layer, last = {frozenset(range(len(claims)))}, set()
+    while layer := {s for s in layer if s and claims[sorted(s)].any(axis=0).all()}:
+        last, layer = layer, {s - {i} for s in layer for i in s}
+    return [tuple(sorted(s)) for s in last]
+
+
+def fewest_by_products(claims):
+    """Of the parts that do not claim a place, none may be all of a set: a product of sums is 0 nowhere."""
+    for size in range(1, len(claims) + 1):
+        sets = np.array(list(itertools.combinations(range(len(claims)), size)))
+        if (good := sets[claims[sets].sum(axis=1).prod(axis=1) > 0]).size:
+            return good.tolist()
+    return ()
+
+
+def fewest_by_integer_program(claims):
+    """How many: an integer program. Which: all sets of that size."""
+    n = len(claims)
+    least = optimize.milp(
+        np.ones(n),
+        constraints=optimize.LinearConstraint(claims.T.astype(float), 1, INF),
+        integrality=np.ones(n),
+        bounds=optimize.Bounds(0, 1),
+    )
+    if not least.success:
+        return []
+    return [
+        s for s in itertools.combinations(range(n), round(least.fun)) if np.logical_or.reduce(claims[list(s)]).all()
+    ]
+
+
+def columns_in_plain_python(bearings, field_of_view, width):
+    half = math.tan(field_of_view / 2)
+    return [
+        int((1 - math.tan(b) / half) / 2 * width) if -field_of_view / 2 < b < field_of_view / 2 else -1
+        for b in bearings.tolist()
+    ]
+
+
+def columns_by_rays(bearings, field_of_view, width):
+    """Where the beam meets the sensor's plane, one ahead."""
+    x, y = np.cos(bearings), np.sin(bearings)
+    half = np.tan(field_of_view / 2)
+    ahead = (x > 0) & (np.abs(y) < half * x) if field_of_view < np.pi else x == x
+    return np.where(ahead, (half - y / np.where(ahead, x, 1.0)) // (2 * half / width), -1)
+
+
+def columns_by_homogeneous(bearings, field_of_view, width):
+    focal = width / (2 * np.tan(field_of_view / 2))
+    camera = np.array([[-focal, width / 2], [0.0, 1.0]])
+    u, w = camera @ [np.sin(bearings), np.cos(bearings)]
+    place = np.divide(u, w, out=np.full(len(bearings), -1.0), where=w > 0)
+    return np.where((place >= 0) & (place < width), np.floor(place), -1).astype(int)
+
+
+def columns_by_digitize(bearings, field_of_view, width):
+    edges = np.arctan(np.linspace(1, -1, width + 1) * np.tan(field_of_view / 2))
+    column = np.digitize(bearings, edges) - 1
+    column[(column < 0) | (column >= width)] = -1
+    return column
+
+
+def columns_by_counting_edges(bearings, field_of_view, width):
+    edges = np.arctan(np.linspace(1, -1, width + 1) * np.tan(field_of_view / 2))
+    passed = (bearings[:, None] < edges).sum(axis=1)
+    return np.where(passed <= width, passed - 1, -1)
+
+
+def columns_by_complex_numbers(bearings, field_of_view, width):
+    beam = np.exp(1j * bearings)
+    half = np.exp(0.5j * field_of_view)
+    place = width / 2 * (1 - (beam.imag / beam.real) * (half.real / half.imag))
+    return np.where(beam.real > half.real, np.floor(place), -1)
+
+
 WAYS = {
     "ray_segment": {
         "plain": segment_in_plain_python,
@@ -1113,5 +1231,21 @@ WAYS = {
         "heap": nearest_by_a_heap,
         "neighbours": lambda p, seed, k: NearestNeighbors(n_neighbors=k + 1).fit(p).kneighbors(p[[seed]])[1][0],
         "ranks": nearest_by_ranks,
+    },
+    "fewest_parts": {
+        "integers": fewest_by_integers,
+        "growing": fewest_by_growing,
+        "branching": fewest_by_branching,
+        "taking away": fewest_by_taking_away,
+        "products": fewest_by_products,
+        "integer program": fewest_by_integer_program,
+    },
+    "camera_columns": {
+        "plain": columns_in_plain_python,
+        "rays": columns_by_rays,
+        "homogeneous": columns_by_homogeneous,
+        "digitize": columns_by_digitize,
+        "counting edges": columns_by_counting_edges,
+        "complex": columns_by_complex_numbers,
     },
 }

@@ -293,3 +293,21 @@ def nearest_to(points, seed, k):
     difference = points - points[seed]
     distance = np.sqrt(np.sum(difference**2, axis=1))
     return np.argsort(distance)[: k + 1]
+
+
+def fewest_parts(claims):
+    for size in range(1, len(claims) + 1):
+        found = []
+        for some in itertools.combinations(range(len(claims)), size):
+            if np.all(np.any(claims[list(some)], axis=0)):
+                found.append(some)
+        if len(found) > 0:
+            return found
+    return []
+
+
+def camera_columns(bearings, field_of_view, width):
+    share = np.tan(bearings) / np.tan(field_of_view / 2)
+    place = (1 - share) / 2 * width
+    inside = np.abs(bearings) < field_of_view / 2
+    return np.where(inside, np.floor(place), -1).astype(int)
