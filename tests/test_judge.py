@@ -231,6 +231,37 @@ def test_t17_waiting_for_a_busy_machine_is_no_fault(monkeypatch):
             remote(workers, "length").afresh()(np.array([3.0, 4.0]))
 
 
+@needs_fork
+def test_t17_a_loop_that_never_ends_takes_no_time_of_the_next_cell():
+    """On a busy machine an honest task after it was out of time: its own calls, and the loop's, were counted."""
+
+    def loops():
+        while True:
+            pass
+
+    pids = []
+    with tempfile.TemporaryDirectory() as folder:
+        workers = Workers(Path(folder), lambda: sum(spent(pid) for pid in pids if psutil.pid_exists(pid)), 0.3)
+        for cell in (3, 4):
+            pids.append(os.fork())
+            if not pids[-1]:
+                try:
+                    serving._wait(serving._greet(workers.address, cell, "twin"), workers.address, cell, {"f": loops})
+                finally:
+                    os._exit(0)
+        while len(workers.twins) < 2:
+            workers.meet()
+        with pytest.raises(OutOfTime):
+            remote(workers, "f")()
+        workers.start(4)
+        before = workers.spent()
+        time.sleep(1.0)
+        assert workers.spent() - before < 0.1
+        workers.close()
+        for pid in pids:
+            os.waitpid(pid, 0)
+
+
 @pytest.mark.parametrize(("load", "comes"), [(10.0, True), (0.0, False)])
 def test_t17_a_worker_that_comes_late_on_a_busy_machine_is_met(tmp_path, monkeypatch, load, comes):
     monkeypatch.setattr("psutil.getloadavg", lambda: (load * psutil.cpu_count(), 0.0, 0.0))

@@ -69,6 +69,7 @@ class Workers:
         self.address = self.here.getsockname()
         self.twins: dict[int, socket.socket] = {}
         self.line: socket.socket | None = None
+        self.cell = -1  # whose worker is at work
         self.traces: list[str] = []  # of what no honest function does
 
     def close(self) -> None:
@@ -79,6 +80,9 @@ class Workers:
     def start(self, cell: int) -> None:
         """Let a new worker begin; raises Ended if there is none."""
         self._let_go()
+        if cell != self.cell:
+            self._leave(self.cell)
+        self.cell = cell
         self.meet()
         self.began, self.spent_before = time.monotonic(), self.spent()
         twin = self.twins.get(cell)
@@ -144,6 +148,14 @@ class Workers:
         if self.line:
             self.line.close()
         self.line = None
+
+    def _leave(self, cell: int) -> None:
+        """End a cell's twin and its worker: the time of a loop that never ends would count as the next cell's."""
+        if twin := self.twins.pop(cell, None):
+            with suppress(OSError, HungUpError):
+                twin.shutdown(socket.SHUT_WR)
+                hear(twin, watch=_hurry(GREETING_SECONDS * busy()))  # until both have gone
+            twin.close()
 
     def _watch(self) -> None:
         """Raise OutOfTime when the worker's time is over."""
