@@ -6,6 +6,7 @@ import time
 from html import escape
 from xml.etree import ElementTree
 
+import ipywidgets
 import numpy as np
 import pytest
 
@@ -34,6 +35,7 @@ CORNERS = [
     for corner in factory().corners()
 ]
 ENTRIES = re.compile(r'<g class="entry" transform="translate\([^ ]+ ([^)]+)\)">.*?<text[^>]*>([^<]*)</text></g>')
+VIEW = "application/vnd.jupyter.widget-view+json"
 KEY_TO_PICTURE = 0.05  # s of the processor's time: with the browser's share this stays fluent; mostly it is half of it
 
 
@@ -231,7 +233,16 @@ def test_an_error_at_the_start_is_not_hidden():
 def test_what_a_notebook_stores_is_one_line_that_stays_the_same():
     bundle = rings()._repr_mimebundle_()
     assert bundle["text/plain"] == "Slider: radius, words"
-    assert set(bundle) == {"text/plain", "application/vnd.jupyter.widget-view+json"}
+    assert set(bundle) == {"text/plain", VIEW}
+
+
+@pytest.mark.parametrize("make", [lambda: rings(), lambda: pk.widgets.predict("side")], ids=["slider", "prediction"])
+def test_a_panel_is_shown_where_widgets_tell_no_mime_types(make, monkeypatch):
+    """Those of ipywidgets 7, which Colab has, do not."""
+    monkeypatch.delattr(ipywidgets.Widget, "_repr_mimebundle_", raising=False)
+    view = make()._repr_mimebundle_()[VIEW]
+    assert (view["version_major"], view["version_minor"]) == (2, 0)
+    assert len(view["model_id"]) == 32
 
 
 def test_the_corners_are_those_of_the_box_and_all_options():

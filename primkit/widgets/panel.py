@@ -29,3 +29,12 @@ class Attendant(anywidget.AnyWidget):
 def attended(parts: Sequence[Any], sliders: int) -> Any:
     """Return the parts below each other, with so many sliders among them, and who looks after them."""
     return ipywidgets.VBox([*parts, Attendant(sliders)]).add_class("primkit-panel")
+
+
+def shown(panel: Any, words: str) -> dict[str, Any]:
+    """Return what a page is sent to show a panel, and the words that are stored of it.
+
+    ipywidgets 7, which Colab has, knows no ``_repr_mimebundle_``.
+    """
+    view = {"version_major": 2, "version_minor": 0, "model_id": panel.model_id}
+    return {"application/vnd.jupyter.widget-view+json": view, "text/plain": words}

@@ -196,7 +196,9 @@ class Predictions:
 
     def _repr_mimebundle_(self, **_kinds: Any) -> dict[str, Any]:
         """Show the panel; stored as text it is one line that does not change from run to run."""
-        return dict(self.panel()._repr_mimebundle_()) | {"text/plain": repr(self)}
+        from .panel import shown
+
+        return shown(self.panel(), repr(self))
 
     def __repr__(self) -> str:
         return "Predict: " + " ".join(question.ask for question in self.asked)

@@ -284,8 +284,9 @@ class Explorer:
 
     def _repr_mimebundle_(self, **_kinds: Any) -> dict[str, Any]:
         """Show the panel; stored as text it is one line that does not change from run to run."""
-        bundle: dict[str, Any] = dict(self.panel._repr_mimebundle_())
-        return bundle | {"text/plain": repr(self)}
+        from .panel import shown
+
+        return shown(self.panel, repr(self))
 
     def __repr__(self) -> str:
         return "Slider: " + ", ".join(control.label or control.name for control in self.controls)
