@@ -1,5 +1,7 @@
 """Composites: what a world sees of them, how they are taken apart, and what is said to be open."""
 
+import subprocess
+import sys
 from collections.abc import Callable
 
 import numpy as np
@@ -44,6 +46,13 @@ def test_a_composite_is_taken_apart(name: str, apart: dict[str, Apart | None]) -
     assert tuple(sorted(part.kind for part in found.parts)) == composite.kinds
     union, truth = shapely.union_all([part.to_shapely() for part in found.parts]), composite.union.to_shapely()
     assert union.intersection(truth).area / union.union(truth).area > 0.98
+
+
+@pytest.mark.parametrize(("words", "loaded"), [("import primkit", False), ("import primkit; primkit.take_apart", True)])
+def test_the_wing_is_loaded_when_it_is_asked_for(words: str, loaded: bool) -> None:
+    code = f"import sys; {words}; print(any(name.startswith('primkit.parts') for name in sys.modules))"
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert told.strip() == str(loaded)
 
 
 def test_how_parts_meet_is_told(apart: dict[str, Apart | None]) -> None:

@@ -26,7 +26,7 @@ from .slider import Choice, Explorer, Picture, Slider, explore
 
 PAINT = ((0.9, 0.35, 0.1), (0.1, 0.35, 0.9))  # of the first part and of the second
 PART_COLORS, UNKNOWN_COLOR = (VERMILION, BLUE), GREY
-THINGS = ("two boxes", "an L", "a house")
+MADE_OF = ("two boxes", "an L", "a house")
 AROUND = np.arange(12) * np.pi / 6  # rad: from here the robot looks at the middle
 AWAY = 0.33  # m
 LEGEND = (
@@ -39,7 +39,7 @@ def composites() -> Explorer:
     """Return the slider of lesson 12: where two parts meet, and by how much the camera is turned."""
     return explore(
         draw_composites,
-        Choice("made", THINGS, start="two boxes", label="made of"),
+        Choice("made", MADE_OF, start="two boxes", label="made of"),
         Slider("joint", -8.0, 8.0, 1.0, start=0.0, unit="cm"),
         Slider("turned", -12.0, 12.0, 1.0, start=0.0, unit="degrees", label="camera turned"),
         settings={
