@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arguments import Bools, Floats
+from ..arguments import Bools, Floats, Ints
 from .along_beam import Beams, log_likelihoods
 from .solids import Plane, Solid, first_of
 
@@ -70,7 +70,7 @@ def end_of(solid: Solid, k: int, beams: Beams, ground: Plane | None) -> End:
     enters, leaves = solid.moved(FARTHEST_END * slope).chord(beams.origins, beams.directions)
     away, start = beams.directions @ normal, (beams.origins - solid.center) @ normal
 
-    def ranges(growth: Floats, which: Bools | slice) -> Floats:
+    def ranges(growth: Floats, which: Bools | Ints | slice) -> Floats:
         a, first, last = away[which], enters[which], leaves[which]
         with np.errstate(divide="ignore", invalid="ignore"):
             cut = (solid.half[j] + growth[:, None] - start[which]) / a
