@@ -143,7 +143,7 @@ def find_shapes(
         Functions of your own in the place of steps: ``Steps(segment=..., fit_line=..., fit_circle=..., measure=...)``.
     kinds : sequence of str
         What can be there, if that is known beforehand: some of ``"circle"``, ``"triangle"``, ``"rectangle"``,
-        ``"pentagon"`` and ``"polygon"``. ``PAPER`` has no use for it.
+        ``"pentagon"``, ``"polygon"``. Without the last, three eighths of a circle make certain. No use for ``PAPER``.
     rng : int or numpy.random.Generator, optional
         Seed or generator: the same seed gives the same shapes, to the last bit, for points in any order.
 

@@ -259,3 +259,20 @@ def test_a_plank_whose_end_no_beam_met_is_not_certain(width):
         points = np.vstack([long, end])
         certain += [one.certain for one in pk.find_shapes(points + rng.normal(0, 0.002, points.shape), rng=0)]
     assert not any(certain)
+
+
+FOUR_KINDS = ("circle", "triangle", "rectangle", "pentagon")
+
+
+@pytest.mark.parametrize(("corners", "certain"), [(0, True), (3, False), (4, False), (5, False)])
+def test_from_one_pose_a_circle_is_certain_only_where_none_but_the_four_kinds_can_be(corners, certain):
+    turns = np.arange(corners) * 2 * np.pi / max(corners, 1) + 0.3
+    there = pk.Circle((2.0, 0.3), 0.2)
+    if corners:
+        there = pk.Polygon(there.center + 0.2 * np.column_stack([np.cos(turns), np.sin(turns)]))
+    lidar = pk.Lidar(beams=1440, range_max=8.0, noise_std=0.005)
+    grid = pk.Grid(0.01)
+    grid.add(pk.scan(pk.World([there], 6), [(0, 0, 0)], lidar, rng=0))
+    found = pk.find_shapes(grid, kinds=FOUR_KINDS, rng=0)
+    assert [one.kind for one in found if one.certain] == ["circle"] * certain
+    assert not any(one.certain for one in pk.find_shapes(grid, rng=0))

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..arguments import Floats, Ints
 from ..circles import straightened
 from ..lines import Line
-from ..seen import seen_shares
+from ..seen import REACH, seen_shares
 from ..shapes import KINDS, Circle, Polygon, Shape
 from .candidates import candidates, explained_again
 from .deviations import Certainty, certainty, without_points
@@ -30,6 +30,8 @@ FEW_NEW = 0.1  # share of new points up to which a group is fitted anew from wha
 FEW_OFF = 0.02  # share of the points by which more may lie beside a group's shape then
 SURE = 30.0  # margin up to which a few points more may change what a group is
 MOST_SEEN = 0.75  # share of each side; behind more there may be something else
+# Where only the four kinds can be there, nothing else begins as so long an arc, as seen from one pose.
+ENOUGH_ARC = np.radians(135)
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,8 +154,9 @@ class Choice:
         """Whether what it is, is beyond doubt.
 
         It is ahead of all rivals, and of itself with bends; nearly all points lie on it, none deep inside; nearly all
-        of it was seen, each side by points of its own; it is so large that its kind can show, and no cut between two
-        corners that bend inwards leaves two shapes with names.
+        of it was seen, each side by points of its own, or, where only the four kinds can be there, three eighths of a
+        circle; it is so large that its kind can show, and no cut between two corners that bend inwards leaves two
+        shapes with names.
         """
         best = self.ranked[0] if self.ranked else None
         if best is None or best.shape is None:
@@ -164,11 +167,19 @@ class Choice:
             min(self.lead, self.fit) >= CERTAIN
             and self.on_it.mean() >= NEARLY_ALL
             and not self.inside.any()
-            and min(best.seen) >= MOST_SEEN
+            and (min(best.seen) >= MOST_SEEN or self._round_enough(best))
             and not (isinstance(figure, Outlines) and without_points(figure, self.points, self.spread).any())
             and large >= LEAST_SIDE
             and not (isinstance(figure, Outlines) and figure.of_two)
             and self.margin >= CERTAIN  # the last, for it fits the rivals that were not
+        )
+
+    def _round_enough(self, best: Candidate) -> bool:
+        """Tell whether a circle was seen over so much of it that none of the kinds that can be there begins alike."""
+        return (
+            isinstance(best.figure, Circle)
+            and "polygon" not in self.kinds
+            and best.length - 2 * REACH >= ENOUGH_ARC * best.figure.radius
         )
 
 

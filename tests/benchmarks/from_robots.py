@@ -1,11 +1,12 @@
 """From robots: what is found in recordings of robots and in worlds of other simulators, which are not in the project.
 
-    python -m tests.benchmarks.from_robots log FILE [N]    every N-th scan of a log by itself, and all scans merged
+    python -m tests.benchmarks.from_robots log FILE [N [KIND ...]]    every N-th scan of a log, and all merged
     python -m tests.benchmarks.from_robots still FILE TOPIC [MM]    60 scans at a time of a robot that stands still
     python -m tests.benchmarks.from_robots worlds FILE ...    worlds, scanned with the RPLIDAR A1 and the LDS-01
 
-``log``: cells of 1 cm. A pillar is a circle of at least two scans or of the map of all, fitted anew to all hits within
-5 cm of it (soft L1); each certain sighting is compared with it. Times are processor time.
+``log``: cells of 1 cm; the kinds that can be there, all by default. A pillar is a circle of at least two scans or of
+the map of all, fitted anew to all hits within 5 cm of it (soft L1); each certain sighting is compared with it. Times
+are processor time.
 
 ``still``: cells of 1 cm, or so many millimetres, cleaned by ``steady``. A certain shape is there in a scan if half of
 its points have a hit within 3 cm, and missing if fewer have one though the beams reach its place.
@@ -36,29 +37,29 @@ CLOSE = 0.01  # m: a shape that is right
 SENSORS = {"RPLIDAR A1": pk.RPLIDAR_A1, "LDS-01": pk.LDS_01}
 
 
-def found_in(scans, cell=CELL):
+def found_in(scans, cell=CELL, kinds=None):
     """Return what is found in the map of scans, and the processor time of it."""
     grid = pk.Grid(cell)
     grid.add(scans)
     start = time.process_time()
-    found = pk.find_shapes(grid, rng=0)
+    found = pk.find_shapes(grid, kinds=kinds, rng=0)
     return found, time.process_time() - start
 
 
 # --- a log --------------------------------------------------------------------------------------------------
 
 
-def log(path, every=1):
+def log(path, every=1, *kinds):
     """Print how well a log's single scans and the map of all of them tell its pillars."""
-    scans = pk.load_scans(path)
+    every, kinds, scans = int(every), kinds or None, pk.load_scans(path)
     sightings, odd, times = [], [], []
     for k in range(0, len(scans), every):
-        found, seconds = found_in(scans[k : k + 1])
+        found, seconds = found_in(scans[k : k + 1], CELL, kinds)
         times.append(1000 * seconds)
         sightings += [(k, one) for one in found if one.kind == "circle" and one.certain]
         odd += [(k, one) for one in found if one.kind != "circle" and one.certain]
-    merged, merged_time = found_in(scans)
-    cleaned, cleaned_time = found_in(pk.steady(scans, CELL))
+    merged, merged_time = found_in(scans, CELL, kinds)
+    cleaned, cleaned_time = found_in(pk.steady(scans, CELL), CELL, kinds)
     print(f"{len(times)} scans: median {np.median(times):.0f} ms, 90 % below {np.quantile(times, 0.9):.0f} ms")
     print(f"certain in single scans: {len(sightings)} circles, {len(odd)} others {[(k, one.kind) for k, one in odd]}")
     for words, found, seconds in (("as it is", merged, merged_time), ("steady", cleaned, cleaned_time)):
@@ -195,7 +196,7 @@ def main():
     elif told.what == "still":
         still(*told.paths)
     else:
-        log(told.paths[0], *map(int, told.paths[1:]))
+        log(*told.paths)
 
 
 if __name__ == "__main__":

@@ -137,7 +137,9 @@ MUTANTS = (
     # --- choice ---
     Mutant("no point deep inside", "robust/choice.py", "and not self.inside.any()", "", CHOICE),
     Mutant("nearly all points lie on it", "robust/choice.py", "and self.on_it.mean() >= NEARLY_ALL", "", CHOICE),
-    Mutant("nearly all of it was seen", "robust/choice.py", "and min(best.seen) >= MOST_SEEN", "", CHOICE),
+    Mutant("nearly all of it was seen", "robust/choice.py", "min(best.seen) >= MOST_SEEN", "True", CHOICE),
+    Mutant("an arc, where all can be", "robust/choice.py", 'and "polygon" not in self.kinds', "", CHOICE),
+    Mutant("a side has its own points", "robust/deviations.py", ".sum(axis=0) < LEAST_OWN", ".sum(axis=0) < 0", CHOICE),
     Mutant("so large that its kind can show", "robust/choice.py", "and large >= LEAST_SIDE", "", CHOICE),
     # --- lack of fit ---
     Mutant(
