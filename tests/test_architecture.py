@@ -55,8 +55,8 @@ KNOWS_ONLY = {
 KNOWS_NO = {"widgets": ("plots",), "scene": ("plots", "widgets"), "checks": ("plots", "widgets", "scene")}
 KNOWN_TO = {
     "course": ("commands",),
-    "space": (),
-    "parts": ("widgets",),  # the slider of its lesson
+    "space": ("widgets",),  # the slider of its lesson
+    "parts": ("widgets",),  # likewise
     "widgets": (),
     "scene": (),
     "checks": ("course",),

@@ -30,7 +30,7 @@ from .judges import is_pair, shown
 
 CLOSE_IN_SPACE = 1e-6  # m, or of a unit vector
 NEARER = 1e-6  # of the RMS: far above rounding
-FLAT = 20.0  # times as long as wide: what is flatter hardly fixes a plane, or a sphere
+TOO_FLAT = 20.0  # times as long as wide: what is flatter hardly fixes a plane, or a sphere
 
 PAIRS = ((0, 1), (0, 2), (1, 2))
 Pair = tuple[Floats, float]  # (normal, offset) or (center, radius)
@@ -90,7 +90,7 @@ def _triples(rng: np.random.Generator) -> Iterator[Args]:
         if n % 20 == 10:  # whole numbers are exact: in a row to the last bit
             return (rng.integers(-9, 9, 3) + np.outer([0, 1, 3], rng.permutation([1.0, -2.0, 4.0])),)
         points = rng.uniform(-2, 2, (3, 3))
-        return (points,) if np.linalg.cond(points[1:] - points[0]) < FLAT else None
+        return (points,) if np.linalg.cond(points[1:] - points[0]) < TOO_FLAT else None
 
     yield from random_cases(draw)
 
@@ -217,7 +217,7 @@ def _balls(rng: np.random.Generator) -> Iterator[Args]:
         ways /= np.linalg.norm(ways, axis=1)[:, None]
         radius = float(rng.uniform(0.1, 0.5))
         points = rng.uniform(-2, 2, 3) + radius * (1 + (n % 4 == 2) * rng.normal(0, 0.02, (len(ways), 1))) * ways
-        return (points,) if np.linalg.cond(points - points.mean(axis=0)) < FLAT else None
+        return (points,) if np.linalg.cond(points - points.mean(axis=0)) < TOO_FLAT else None
 
     yield from random_cases(draw)
 
