@@ -301,15 +301,13 @@ class Check:
 
     def _other_name(self, mine: Any) -> str:
         """Return a word on a function of the cell that asks which has the same arguments and another name."""
-        asks = inspect.currentframe()
+        asks, names = inspect.currentframe(), list(inspect.signature(self.reference).parameters)
         while asks and asks.f_globals is not getattr(mine, "__globals__", None):
             asks = asks.f_back
-        if asks is None:
-            return ""
-        names = list(inspect.signature(self.reference).parameters)
-        for name, other in asks.f_globals.items():
-            own = isinstance(other, FunctionType) and other.__code__.co_filename == asks.f_code.co_filename
-            if own and other is not mine and list(inspect.signature(other).parameters) == names:
+        cell = asks.f_code.co_filename if asks else ""
+        for name, other in asks.f_globals.items() if asks else ():
+            own = isinstance(other, FunctionType) and other.__code__.co_filename == cell and other is not mine
+            if own and list(inspect.signature(other).parameters) == names:
                 return f"\nThis is about {mine.__name__}. Is {name} your answer? Then give it the name {self.name}."
         return ""
 
