@@ -172,8 +172,8 @@ def test_no_script_is_left_in_the_feedback(handed_back):
     assert harm_in("<script>x</script><a onclick=1 href='JavaScript:x'>") == ["script", "onclick", "href"]
     assert "ray_arc: 4 of 4 points" in body  # the marks' tables are as they were
     assert re.search(r'<table style="border-collapse:\s*collapse', body)
-    figure = re.search(r'<img src="data:image/png;base64,[\w+/=\s]+"[^>]*alt="(.*?)"', body)
-    assert "a beam meets the inside" in figure[1]  # a picture is one, with its words, and no letters of its HTML
+    figure = re.search(r"<img [^>]*data:image/png;base64,[^>]*>", body)
+    assert "a beam meets the inside" in figure[0]  # a picture is one, with its words, and no letters of its HTML
     assert "primkit-picture" not in body
 
 

@@ -1,7 +1,7 @@
 """Composites: two parts, how far they reach into each other, and the colours of a camera. Lesson 12's slider, and maps.
 
 >>> composites()
-Slider: made of, joint, camera turned
+Slider: made of, joint, camera
 >>> from primkit.widgets.drawing import what_it_says
 >>> what_it_says(composites().draw(made="two boxes", joint=5.0))
 'Two boxes, the joint 5 cm aside: the hits lie 0.2 mm from the outline (root mean square), and 85 % bear the colour of \
@@ -41,7 +41,7 @@ def composites() -> Explorer:
         draw_composites,
         Choice("made", MADE_OF, start="two boxes", label="made of"),
         Slider("joint", -8.0, 8.0, 1.0, start=0.0, unit="cm"),
-        Slider("turned", -12.0, 12.0, 1.0, start=0.0, unit="degrees", label="camera turned"),
+        Slider("turned", -12.0, 12.0, 1.0, start=0.0, unit="degrees", label="camera"),
         settings={
             "two boxes": {},
             "the joint aside": {"joint": 5.0},
