@@ -209,6 +209,11 @@ def test_a_source_that_is_none_finds_no_slip(source):
         assert CHECKS["ray_segment"][0](mine).verdict == "wrong"
 
 
+@pytest.mark.parametrize(("task", "constant"), [("ray_segment", np.inf), ("match_shapes", []), ("silhouette", 0)])
+def test_a_constant_is_like_no_slip(task, constant):
+    assert "plain way" not in CHECKS[task][0](lambda *_: constant).says
+
+
 def test_where_no_code_can_be_read_it_is_compared_with_the_plain_way():
     scope = {"np": np}
     exec(textwrap.dedent(SEGMENT).replace("t >= 0", "t <= 0"), scope)

@@ -263,6 +263,8 @@ class Check:
 
     def _tell_likeness(self, wrong: list[Case], right: list[Case]) -> list[str]:
         """Return which slip in the plain way gives the same results, for a function whose code cannot be read."""
+        if len({repr(case.got) for case in (*wrong, *right)}) == 1:  # says nothing of how it came
+            return []
 
         def alike(edited: Any, case: Case, seconds: float) -> bool:
             other = run(edited, copy.deepcopy(case.args), min(seconds, TRIED_SECONDS)).got
@@ -344,8 +346,6 @@ def _accepts(function: Callable[..., Any], args: Args) -> bool:
     """Tell whether a function can be called with these arguments, in this order."""
     try:
         inspect.signature(function).bind(*args)
-    except TypeError:
-        return False
-    except ValueError:  # one of those that do not say what they take
-        return True
+    except (TypeError, ValueError) as error:
+        return isinstance(error, ValueError)  # one of those that do not say what they take
     return True

@@ -44,7 +44,8 @@ def edits(tree: ast.Module, name: str, rank: int = 0, near: Line | None = None) 
         if rank and isinstance(node, ast.arguments) and getattr(parent, "name", "") == name:
             options += [("order", new) for new in _exchanged(node)]
         for kind, new in options:
-            _put(parent, field, n, ast.copy_location(new, node) if hasattr(node, "lineno") else new)
+            placed = ast.fix_missing_locations(ast.copy_location(new, node)) if hasattr(node, "lineno") else new
+            _put(parent, field, n, placed)
             yield kind, _line(node, parent)
         if options:
             _put(parent, field, n, node)

@@ -187,10 +187,9 @@ class _Code:
     def build(self) -> Any:
         """Return the function that the tree now says; None when it says nothing that Python knows."""
         try:
-            tree = ast.fix_missing_locations(self.tree)
             if isinstance(self.function, FunctionType):
-                return built(self.function, tree)
-            return self.function.edited(ast.unparse(tree))
+                return built(self.function, self.tree)
+            return self.function.edited(ast.unparse(self.tree))
         except (SyntaxError, ValueError, TypeError, NameError):
             return None
 
