@@ -99,7 +99,7 @@ class Account:
         room, around = np.ptp(points, axis=0) + 2 * CHANCE_AROUND, BY_CHANCE * self.density
         if len(points) >= around * room.prod():
             return False
-        return len(points) < around * shapely.MultiPoint(points).convex_hull.buffer(CHANCE_AROUND).area
+        return len(points) < around * shapely.linestrings(points).convex_hull.buffer(CHANCE_AROUND).area
 
 
 def _as_numbers(points: Floats) -> NDArray[np.complex128]:

@@ -129,6 +129,8 @@ class Detection:
     def in_metres(self, frame: Frame) -> Detection:
         """Return what was found in a frame, in metres."""
         shape, metres = self.shape, frame.metres
+        if frame.unit == 1 and not frame.origin.any():
+            return replace(self, frame=frame)
         if isinstance(shape, Circle):
             shape = Circle(metres(shape.center), shape.radius * frame.unit)
         else:

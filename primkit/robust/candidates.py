@@ -311,8 +311,10 @@ def explained_again(
 
 def _explains(points: Floats, best: Candidate, spread: float) -> bool:
     """Tell whether nearly all points lie on the best explanation, all around, and without any order in their misses."""
-    if isinstance(best.figure, Line) or min(best.seen) < NEARLY_ALL or best.n_on < NEARLY_ALL * len(points):
+    if best.n_on < NEARLY_ALL * len(points) or min(best.seen, default=1.0) < NEARLY_ALL:
         return False
+    if isinstance(best.figure, Line):  # what is as thin closes around nothing that a rectangle would not
+        return True
     return lack_of_fit(points, best.figure, spread, square=best.square) >= CERTAIN
 
 

@@ -103,7 +103,7 @@ class Choice:
         """The corners of the convex hull of the points, shape (M, 2), metres."""
         import shapely
 
-        return np.asarray(shapely.get_coordinates(shapely.MultiPoint(self.points).convex_hull))
+        return np.asarray(shapely.get_coordinates(shapely.linestrings(self.points).convex_hull))
 
     @cached_property
     def closed(self) -> bool:

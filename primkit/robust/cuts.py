@@ -33,6 +33,7 @@ KNOTS = 60  # cuts lie between two of so many places along the outline, a centim
 MOST_PIECES = 5
 LEAST_STRETCH = 0.01  # m: two thirds of the shortest side; the rest of it may not have been seen
 MOST_CHORDS = 2
+ALONG_BEARING = REACH / 2  # m: a stretch that was not seen is wider than this across the bearings
 COMPANY, LEAST_COMPANY = 0.009, 3  # m: a point with fewer others as near is a stray, if most have as many
 MOST_IN_COMPANY = 0.5
 DRAWN_IN = 50  # a frame is drawn in by one point in so many
@@ -96,8 +97,13 @@ def by_bearing(points: Floats) -> Floats:
 
 
 def chords(ordered: Floats, unseen: float = REACH) -> list[Line]:
-    """Return the lines over the widest gaps between neighbours, those wider than ``unseen``, metres."""
-    gap = _gaps(ordered)
+    """Return the lines over the widest gaps between neighbours, those wider than ``unseen``, metres.
+
+    Where the next point lies on nearly the same bearing, noise alone parts them.
+    """
+    (x, y), (next_x, next_y) = ordered.T, np.concatenate([ordered[1:], ordered[:1]]).T
+    beside = np.abs(x * next_y - y * next_x) > ALONG_BEARING * np.hypot(x, y)
+    gap = _gaps(ordered) * beside
     widest = [i for i in np.argsort(-gap, kind="stable")[:MOST_CHORDS].tolist() if gap[i] > unseen]
     ends = [(ordered[i], ordered[(i + 1) % len(ordered)]) for i in widest]
     angles = [float(np.arctan2(p[0] - q[0], q[1] - p[1])) for p, q in ends]

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Literal
 
 import numpy as np
@@ -143,6 +143,7 @@ def judged(points: Floats, figure: Figure, spread: float, *, square: bool = Fals
     return Candidate(figure, square, cost + nameless, length, on_it, seen, nameless)
 
 
+@lru_cache
 def of_sides(k: int) -> Floats:
     """Return the variances of k sides that are fitted each for itself: a side has a kth of the points."""
     return np.tile(OF_SIDE * k, k)

@@ -27,6 +27,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +38,9 @@ from .evidence import Candidate, judged
 from .outlines import Outlines
 from .refine import refine_soft
 from .scatter import CELL, SIGMAS
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 BEAD_CELLS, BEAD_SPREADS = 3.0, 4.0  # neighbours this near are one bead of the path: then noise makes no detours
 MOST_BEADS = 300  # more are made larger: the tree's work goes with their number squared
@@ -134,7 +138,7 @@ def _round_path(points: Floats, reliable: Floats, spread: float) -> Floats | Non
 
 def path_through(points: Floats, spread: float) -> Floats | None:
     """Return the longest path from neighbour to neighbour, shape (M, 2), metres; None for fewer than four beads."""
-    from scipy.sparse.csgraph import dijkstra, minimum_spanning_tree
+    from scipy.sparse.csgraph import dijkstra
 
     size = _bead_size(spread)
     beads = _beads(points, size)
@@ -143,14 +147,26 @@ def path_through(points: Floats, spread: float) -> Floats | None:
         beads = _beads(points, size)
     if len(beads) < 4:
         return None
-    apart = np.hypot(*np.moveaxis(beads[:, None] - beads, 2, 0))
-    tree = minimum_spanning_tree(apart)
+    tree = _shortest_tree(beads, CLOSED_GAP)
+    if tree.nnz < len(beads) - 1:  # some are farther from all others
+        tree = _shortest_tree(beads, np.inf)
     end = int(np.argmax(dijkstra(tree, directed=False, indices=0)))
     far, before = dijkstra(tree, directed=False, indices=end, return_predecessors=True)
     path = [int(np.argmax(far))]
     while path[-1] != end:
         path.append(int(before[path[-1]]))
     return beads[path]
+
+
+def _shortest_tree(beads: Floats, reach: float) -> csr_array:
+    """Return the shortest tree of links, none longer than ``reach`` metres, that connects all beads as far as it can."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import minimum_spanning_tree
+    from scipy.spatial import cKDTree
+
+    one, other = cKDTree(beads).query_pairs(reach, output_type="ndarray").T
+    apart = np.hypot(*(beads[one] - beads[other]).T)
+    return minimum_spanning_tree(csr_array((apart, (one, other)), shape=(len(beads), len(beads))))
 
 
 def _bead_size(spread: float) -> float:

@@ -92,9 +92,10 @@ class Outlines:
         before_cos, before_sin, before_d = _before(cos), _before(sin), _before(d)
         bend = sin * before_cos - cos * before_sin
         bend = np.where(np.abs(bend) < PARALLEL, PARALLEL, bend)
-        x = (before_d * sin - d * before_sin) / bend
-        y = (d * before_cos - before_d * cos) / bend
-        return np.stack([x, y], axis=-1)
+        corners = np.empty((*d.shape, 2))
+        corners[..., 0] = (before_d * sin - d * before_sin) / bend
+        corners[..., 1] = (d * before_cos - before_d * cos) / bend
+        return corners
 
     def ends(self) -> tuple[Floats, Floats]:
         """Return the corners in which each side begins and ends, shape (C, K, 2) each, metres."""
@@ -229,4 +230,5 @@ def from_angle_order(angles: Floats, offsets: Floats) -> Outlines:
     """Return outlines from sides in any order: they are put in the order of their normals' bearings."""
     angles = np.mod(angles, 2 * np.pi)
     order = np.argsort(angles, axis=1, kind="stable")
-    return Outlines(np.take_along_axis(angles, order, axis=1), np.take_along_axis(offsets, order, axis=1))
+    row = np.arange(len(angles))[:, None]
+    return Outlines(angles[row, order], offsets[row, order])

@@ -262,7 +262,7 @@ def _may_be_one(a: Choice, b: Choice, spread: float) -> bool:
         return False
     import shapely
 
-    hull = shapely.get_coordinates(shapely.MultiPoint(np.vstack([a.hull, b.hull])).convex_hull)
+    hull = shapely.get_coordinates(shapely.linestrings(np.vstack([a.hull, b.hull])).convex_hull)
     if np.hypot(*np.moveaxis(hull[:, None] - hull, 2, 0)).max() > MOST_ACROSS:
         return False
     edges = np.diff(hull, axis=0)  # clockwise: outwards is to the left

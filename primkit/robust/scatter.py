@@ -20,16 +20,10 @@ Source: the quadrature is in Abramowitz and Stegun (1964), "Handbook of Mathemat
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arguments import Floats, as_points
-
-if TYPE_CHECKING:
-    from scipy.spatial import cKDTree
-
 
 CELL = 0.001  # m: side of the grid's cells, as in the paper; all that follows supposes points on such a grid
 CELL_STD = CELL / 12**0.5  # m: a cell's centre lies evenly within half a cell of the point
@@ -45,7 +39,7 @@ OUTLINE_LENGTH = 0.5
 
 DEEP_CELLS, DEEP_NOISE = 1.25, 5.0  # inside: farther than cells and noise, times its deviation, bring a point
 NEIGHBOURS = 10  # enough for a line with its spread, few enough for a curve to be straight
-ENOUGH_PLACES = 250  # they tell whether there is any noise
+ENOUGH_PLACES = 400  # they tell the spread to a few hundredths of itself
 
 ACROSS = 1 - (0.5 + np.array([-1.0, 0.0, 1.0]) * 0.15**0.5) ** 2  # c^2 at the quadrature's three u, and their shares
 SHARES = np.array([5.0, 8.0, 5.0]) / 18
@@ -133,8 +127,7 @@ def spread_of(points: ArrayLike) -> float:
     """Return the standard deviation of points from the outlines that they lie on, before any is known, metres.
 
     Each point's neighbours lie on a piece of outline that is nearly straight: what they scatter across it is
-    the spread, and the median over all points does not mind corners and strays. Where a look at some hundred places
-    tells that there is no noise, that is enough.
+    the spread, and the median over some hundred places does not mind corners and strays.
 
     Notes
     -----
@@ -150,14 +143,7 @@ def spread_of(points: ArrayLike) -> float:
     points = as_points(points)
     if len(points) < NEIGHBOURS:
         return LEAST_SPREAD
-    tree, every = cKDTree(points), -(-len(points) // ENOUGH_PLACES)
-    at_some_places = _spread_at(points[::every], points, tree)
-    return at_some_places if every == 1 or at_some_places == LEAST_SPREAD else _spread_at(points, points, tree)
-
-
-def _spread_at(places: Floats, points: Floats, tree: cKDTree) -> float:
-    """Return the spread, judged by what the points next to some places scatter, shape (M, 2); a tree has them all."""
-    near = tree.query(places, NEIGHBOURS)[1]  # (M, NEIGHBOURS)
+    near = cKDTree(points).query(points[:: -(-len(points) // ENOUGH_PLACES)], NEIGHBOURS)[1]  # (M, NEIGHBOURS)
     x, y = points[:, 0][near], points[:, 1][near]
     x, y = x - x.mean(axis=1, keepdims=True), y - y.mean(axis=1, keepdims=True)
     xx, yy, xy = (x * x).sum(axis=1), (y * y).sum(axis=1), (x * y).sum(axis=1)
