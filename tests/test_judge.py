@@ -300,7 +300,7 @@ def test_a_limit_for_lines_of_this_process_does_not_break_off_a_message():
         time.sleep(0.3)
         return length(v)
 
-    with afar(0.1, length=waits) as workers:
+    with afar(0.2, length=waits) as workers:
         mine = remote(workers, "length")
         workers.spent = eval("lambda: 0.0")
         assert call_within(0.02, mine, np.array([3.0, 4.0])) == 5.0

@@ -2,7 +2,6 @@
 
 import os
 import re
-import shutil
 import subprocess
 import sys
 
@@ -11,7 +10,6 @@ import pytest
 
 from primkit.course.course import new_course
 from primkit.course.grading import personal_truth
-from primkit.course.moved import MOVED, old_names
 from primkit.course.personal import personal_scans, personal_world
 from primkit.formats import save_scans
 from tests.browser.lab import OPTIONS, PATIENCE, SERVER, TOKEN, _address, _stop, chromium
@@ -78,68 +76,7 @@ def small_course(root):
     return new_course(root / "course", assignments)
 
 
-def with_old_names(course):
-    """Let a course use the first edition's names: the table the other way round."""
-    for path in (path for path in course.root.rglob("*") if path.suffix in (".py", ".ipynb")):
-        text = path.read_text("utf-8")
-        for old, new in MOVED.items():
-            text = text.replace(f"{new}.", f"{old}.").replace(f"{new} ", f"{old} ")
-        path.write_text(text, "utf-8")
-
-
-def mended(course):
-    """Follow to the letter what ``check`` says about old names; return what it said."""
-    said = teach(course.root, "check", code=1)
-    told = re.findall(r"FAULT  (\S+): names (.+), which has moved\n +-> write (.+) in its place, everywhere", said)
-    for file, old, new in told:
-        path = course.root / file
-        path.write_text(path.read_text("utf-8").replace(old, new), "utf-8")
-    return [(file, old) for file, old, _ in told]
-
-
 SALT = "0123456789abcdef" * 2
-
-# What the first edition's notebooks and hidden tests import: on students' machines, and in teachers' courses.
-FIRST_EDITION = """\
-from primkit.checks import Check, Fault
-from primkit.checks.answer import Case
-from primkit.checks.judges import Judge, array, groups, number, points_in_any_order, shown
-from primkit.evaluation import Report
-from primkit.grading import Mark, OutOfTime, Part, Task, personal_truth
-from primkit.grading.table import Row
-from primkit.grading.truth import DEMONSTRATION
-from primkit.personal import personal_scans
-from primkit.plots.look import BLACK, BLUE, GREY, ORANGE, VERMILION
-from primkit.shapes import KINDS
-"""
-
-
-def test_what_the_first_edition_imports_is_there_once_it_is_mended():
-    text = FIRST_EDITION
-    for old, new in MOVED.items():
-        text = text.replace(old, new)
-    exec(text, {})
-
-
-def test_a_course_from_before_the_move_says_how_to_mend_it(tmp_path):
-    """That it works afterwards, the tests below show."""
-    course = small_course(tmp_path)
-    with_old_names(course)
-    assert "primkit.teaching.executing.CarefulExecute" in (course.root / "nbgrader_config.py").read_text()
-    for folder in ("submitted/ada", "release"):
-        shutil.copytree(course.root / "source" / "map", course.root / folder / "map")
-    for command in ("grade", "release"):
-        said = teach(course.root, command, "map", code=2)
-        assert "nbgrader_config.py names primkit.teaching, which has moved: write primkit.course in" in said
-    assert mended(course) == [
-        ("nbgrader_config.py", "primkit.teaching"),
-        ("grader/maps.py", "primkit.grading"),
-        ("source/map/map.ipynb", "primkit.grading.truth"),
-    ]
-    told = "release/map/map.ipynb names primkit.grading.truth, which has moved: primkit teach release map"
-    assert told in teach(course.root, "grade", "map", code=2)
-    assert [str(old) for old in old_names(course)] == [told]
-    assert mended(course) == []
 
 
 @pytest.fixture(scope="module")
@@ -150,8 +87,6 @@ def course(tmp_path_factory):
     """
     made = small_course(tmp_path_factory.mktemp("personal"))
     (made.root / "salt.txt").write_text(SALT)  # with any other, three letters may stand in 18 KB by chance
-    with_old_names(made)  # and all works once they are mended
-    mended(made)
     (made.root / "students.csv").write_text("id,first_name,last_name,email\nada,Ada,Lovelace,\nbob,Bob,Babbage,\n")
     said = {"release": teach(made.root, "release", "map")}
     problem_set = ProblemSet(made.root, "map")

@@ -26,7 +26,7 @@ from primkit.course.graded import Graded, Journal
 from primkit.course.grading import MIME
 from primkit.course.handed_in import Fault, file_faults, tree_hash
 from primkit.course.printing import BROWSERS, page, print_set
-from primkit.course.running import nbgrader
+from primkit.course.running import OUT_OF_TIME, nbgrader
 from tests.submissions import ProblemSet, about, answers_of, read
 from tests.test_assignments import points_left
 
@@ -479,15 +479,15 @@ def test_check_ends_with_1_where_something_is_wrong(course, capsys):
 
 
 SENTENCES = {
-    "no course": (["check"], None),
-    "no such set": (["release", "ps11"], "there is no problem set 'ps11'; did you mean 'ps1'?"),
+    "no such set": (["release", "ps11"], "there is no problem set 'ps11'; there are 09_your_own_map, ps1, ps2,"),
+    "nothing to compare": (["similar", "ps1"], "ps1 was handed in by no students: there must be two to compare"),
     "not handed in": (["grade", "ps1"], "nothing was handed in: run `primkit teach collect ps1 DOWNLOAD`"),
     "not graded": (["report", "ps1"], "nothing of ps1 has been graded yet: run `primkit teach grade ps1` first"),
     "nothing to look at": (["leaks", "nowhere.whl"], "there is no nowhere.whl to look for leaks in"),
 }
 
 
-@pytest.mark.parametrize(("words", "sentence"), list(SENTENCES.values())[1:], ids=list(SENTENCES)[1:])
+@pytest.mark.parametrize(("words", "sentence"), SENTENCES.values(), ids=SENTENCES)
 def test_what_cannot_be_done_is_said_in_one_sentence(course, words, sentence, capsys):
     assert main(["teach", *words, "--course", str(course.root)]) == 2
     err = capsys.readouterr().err
@@ -515,6 +515,8 @@ def test_a_course_is_made_from_the_teachers_archive(tmp_path):
 def test_elsewhere_is_no_course(tmp_path, capsys):
     assert main(["teach", "release", "ps1", "--course", str(tmp_path)]) == 2
     assert "is no course folder: make one with `primkit teach new-course DIR`" in capsys.readouterr().err
+    (one,) = faults(Course(tmp_path))  # and no word of copying solutions there
+    assert one == "course folder"
 
 
 def test_grading_comes_after_releasing(course, capsys):
@@ -550,7 +552,7 @@ def test_a_command_of_nbgrader_s_that_fails_says_why(course):
     assert "no-such-set" in done.reason
     assert (course.root / "log.txt").read_text().startswith("$ nbgrader generate_assignment no-such-set\n")
     stopped = nbgrader(course, "generate_assignment", PS, seconds=0.01)
-    assert (stopped.stopped, stopped.reason) == (True, "TimeoutError: nbgrader was stopped after 0.01 s")
+    assert (stopped.code, stopped.reason) == (OUT_OF_TIME, "TimeoutError: nbgrader was stopped after 0.01 s")
 
 
 def test_a_hash_sees_every_change(tmp_path):

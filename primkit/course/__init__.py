@@ -8,7 +8,7 @@ In:  ``notebooks/assignments`` of the project: problem sets with their solutions
 Out: a course folder, and in it what students get, grades, feedback, reports.
 
 >>> from primkit.course.handed_in import Fault
->>> Fault("ada", "cell 3", "KernelDied", "this cell ended Python").data()["cell"]
+>>> Fault("ada", "cell 3", "KernelDied", "this cell ended Python").cell
 'cell 3'
 
 Imported by the command line and the hidden tests only.

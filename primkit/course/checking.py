@@ -20,10 +20,9 @@ from typing import Any
 from ..installed import PROJECT, Finding, kernel, pins_in, python, version_of
 from ..table import count
 from .confining import UNPROTECTED, confined_by
-from .course import CONFIG, COPIED_FOLDERS, SETTINGS, STUDENTS, Course
+from .course import CAREFUL, COPIED_FOLDERS, SETTINGS, STUDENTS, Course
 from .grading.judging import hidden_tests_of
 from .handed_in import strangers
-from .moved import old_names
 from .notebooks import marked, read_notebook, text_of
 from .students import SAVE_AS, read_students
 
@@ -33,11 +32,14 @@ MARK = re.compile(r"^([\w.]+)\.mark\(", re.MULTILINE)  # of a task, in a hidden 
 
 
 def check(course: Course, environment: Path = ENVIRONMENT) -> list[Finding]:
-    """Look at everything that a course needs."""
-    installed = python(), *_packages(environment), *_commands(), kernel()
-    moved = (Finding(old.file, f"names {old.name}, which has moved", old.mend) for old in old_names(course))
-    looked_at = *_folder(course), *_sources(course), *moved, *_points(course), *_settings(course), *_secrets(course)
-    return [*installed, _walls(), *looked_at, *_gradebook(course)]
+    """Look at everything that a course needs; elsewhere, only at what is installed."""
+    installed = [python(), *_packages(environment), *_commands(), kernel(), _walls()]
+    if not (course.root / "nbgrader_config.py").is_file():
+        found = f"{course.root} is none: it has no nbgrader_config.py"
+        mend = "go into the course folder, or make one by `primkit teach new-course DIR`; one that has lost this file"
+        return [*installed, Finding("course folder", found, f"{mend} gets that of a new one")]
+    looked_at = *_folder(course), *_sources(course), *_points(course), *_settings(course), *_secrets(course)
+    return [*installed, *looked_at, *_gradebook(course)]
 
 
 def _packages(environment: Path) -> Iterator[Finding]:
@@ -78,13 +80,8 @@ def _walls() -> Finding:
 
 
 def _folder(course: Course) -> Iterator[Finding]:
-    config = course.root / "nbgrader_config.py"
-    if not config.is_file():
-        yield Finding("course folder", f"{course.root} has no nbgrader_config.py", "primkit teach new-course DIR")
-        return
-    text = config.read_text(encoding="utf-8")
-    careful = "CarefulExecute" in text or "CarefulExecute" not in CONFIG
-    mend = "put primkit.course.executing.CarefulExecute into c.Autograde.autograde_preprocessors, as in a new course"
+    careful = CAREFUL in (course.root / "nbgrader_config.py").read_text(encoding="utf-8")
+    mend = f"put {CAREFUL} into c.Autograde.autograde_preprocessors, as in a new course"
     found = "ours" if careful else "runs submissions without limits"
     yield Finding("nbgrader_config.py", found, mend, careful)
     try:
@@ -160,8 +157,13 @@ def _secrets(course: Course) -> Iterator[Finding]:
             told, _, mend = str(error).removeprefix(f"{what}: ").partition(": ")
             yield Finding(what, told, mend or "see the first line of a new course's file")
             continue
-        number = f"{len(found)} {'students' if isinstance(found, list) else 'characters'}"
-        yield Finding(what, number + (_odd_name(course) if isinstance(found, list) else ""), fine=True)
+        number = count(len(found), "student" if isinstance(found, list) else "character")
+        number += " yet: fill it in before you collect" * (not found)
+        students, encoding = read_students(course.root / STUDENTS) if isinstance(found, list) else ([], "")
+        # A list in cp1252 could be in another such alphabet.
+        odd = next((each.name for each in students if encoding == "cp1252" and not each.name.isascii()), "")
+        number += f"; is one of them called {odd}? If not: {SAVE_AS}" if odd else ""
+        yield Finding(what, number, fine=True)
         for name in course.sets() if what == "students.csv" else ():
             for fault in strangers(course, name):
                 told, _, mend = fault.says.partition("? ")
@@ -169,13 +171,6 @@ def _secrets(course: Course) -> Iterator[Finding]:
     salt = course.root / "salt.txt"
     if os.name == "posix" and salt.is_file() and salt.stat().st_mode & 0o077:
         yield Finding("salt.txt", "others on this computer can read it", f"chmod 600 {salt}")
-
-
-def _odd_name(course: Course) -> str:
-    """Return the first name that may have been read wrongly: a list in cp1252 could be in another such alphabet."""
-    students, encoding = read_students(course.root / STUDENTS)
-    odd = next((each.name for each in students if not each.name.isascii()), "") if encoding == "cp1252" else ""
-    return odd and f"; is one of them called {odd}? If not: {SAVE_AS}"
 
 
 def _gradebook(course: Course) -> Iterator[Finding]:

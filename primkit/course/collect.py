@@ -95,12 +95,11 @@ def _whose(found: Found, students: Sequence[Student]) -> _File | Refused:
     Only where it does no more than mention a student, as a download may by chance, no other name may contradict it.
     """
     parts = found.parts
+    claims: list[tuple[int, list[Student], Sender | None]] = []
     if found.mail:
         meant = [each for each in students if each.email.casefold() == found.mail.casefold()]
-        meant = meant or called(found.mail.partition("@")[0], students)
-        return _decided(found, meant, parts[:1], parts[1:], None, f"the address {found.mail}")
-    claims: list[tuple[int, list[Student], Sender | None]] = []
-    for place, part in enumerate(parts):
+        claims = [(0, meant or called(found.mail.partition("@")[0], students), None)]
+    for place, part in enumerate(() if found.mail else parts):
         sender = sender_of(part)
         meant = meant_by(part, students) if sender is None else _by_sender(sender, students)
         if meant or sender:
@@ -108,11 +107,17 @@ def _whose(found: Found, students: Sequence[Student]) -> _File | Refused:
     if not claims:
         return Refused(found.place, f"names nobody in the list of students: {REMEDY}")
     place, meant, sender = claims[0]
-    below = ((sender.rest,) if sender and sender.rest else ()) + parts[place + 1 :]
     if not sender and not called(parts[place], students) and (parts[-1].lower().endswith(".ipynb") or claims[-1][2]):
         meant = meant + [each for _, others, _ in claims[1:] for each in others if each not in meant]
-    by = f"{sender.lms.title()}'s name {sender.name!r}" if sender else repr(parts[place])
-    return _decided(found, meant, parts[:place], below, sender, by)
+    if len(meant) != 1:
+        by = f"{sender.lms.title()}'s name {sender.name!r}" if sender else repr(parts[place])
+        by = f"the address {found.mail}" if found.mail else by
+        who = f"may mean {' or '.join(each.id for each in meant)}" if meant else "is nobody's in the list of students"
+        return Refused(found.place, f"{by} {who}: {REMEDY}")
+    again = sender.number or sender.when if sender else ""
+    below = ((sender.rest,) if sender and sender.rest else ()) + parts[place + 1 :]
+    outer = parts[:1] if found.mail else parts[:place]
+    return _File(meant[0].id, (*outer, meant[0].id, again), below or parts[-1:], found, sender)
 
 
 def _by_sender(sender: Sender, students: Sequence[Student]) -> list[Student]:
@@ -122,21 +127,6 @@ def _by_sender(sender: Sender, students: Sequence[Student]) -> list[Student]:
         names.append(names[-1].partition("-")[2])
     by_number = [each for each in students if sender.lms == "canvas" and each.lms_user_id == sender.number]
     return by_number or next((meant for each in names if (meant := called(each, students))), [])
-
-
-def _decided(
-    found: Found,
-    meant: Sequence[Student],
-    outer: tuple[str, ...],
-    below: tuple[str, ...],
-    sender: Sender | None,
-    by: str,
-) -> _File | Refused:
-    if len(meant) != 1:
-        who = f"may mean {' or '.join(each.id for each in meant)}" if meant else "is nobody's in the list of students"
-        return Refused(found.place, f"{by} {who}: {REMEDY}")
-    student, again = meant[0].id, sender.number or sender.when if sender else ""
-    return _File(student, (*outer, student, again), below or found.parts[-1:], found, sender)
 
 
 # --- what it holds ------------------------------------------------------------------------------------------
@@ -154,7 +144,8 @@ def _keep(book: Book, files: Sequence[_File], known: Cells, clock: _Clock) -> It
                     yield Refused(file.found.place, says)
             else:
                 candidates.append((read, file))
-    wanted = {read.notebook for read, _ in candidates if read.notebook} or {known.only(book.name)}
+    books = list(known.marks[book.name])
+    wanted = {read.notebook for read, _ in candidates if read.notebook} or ({*books} if len(books) == 1 else set())
     if not candidates:
         if not any(file.found.parts[-1].lower().endswith(".ipynb") for file in files):
             yield Refused(files[0].found.place, f"holds no notebook ({files[0].student})")
@@ -162,7 +153,7 @@ def _keep(book: Book, files: Sequence[_File], known: Cells, clock: _Clock) -> It
     contents: dict[str, bytes] = {}
     notes: list[str] = []
     chosen = []
-    for notebook in sorted(filter(None, wanted)):
+    for notebook in sorted(wanted):
         fitting = [(read, file) for read, file in candidates if read.notebook in (notebook, "")]
         read, file = max(
             fitting,
@@ -224,15 +215,14 @@ def _beside(notebook: _File, files: Sequence[_File]) -> tuple[dict[str, bytes], 
         clash = any(part.lower().endswith(".ipynb") for part in parts) or any(
             each.startswith(f"{path}/") or path.startswith(f"{each}/") for each in beside
         )
-        if clash or taken > MOST_BESIDE or len(beside) >= MOST_FILES or not all(map(_plain, parts)):
+        if clash or taken > MOST_BESIDE or len(beside) >= MOST_FILES or not all(map(_is_plain, parts)):
             left_out += 1
         else:
             beside[path] = file.found.path.read_bytes()
     return beside, [f"{left_out} files beside it left out: too many, too large, or no names for files"] * bool(left_out)
 
 
-def _plain(part: str) -> bool:
-    """Tell whether every system can have a file of this name."""
+def _is_plain(part: str) -> bool:  # every system can have a file of this name
     return part.isprintable() and part == part.strip(" .") and len(part) < 100 and not set(part) & set('\\/:*?"<>|')
 
 

@@ -14,7 +14,6 @@ from __future__ import annotations
 import secrets
 import shutil
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -44,6 +43,7 @@ FEEDBACK_STEPS = [
     "primkit.course.sanitizing.SafeFeedback",
     "nbconvert.preprocessors.CSSHTMLHeaderPreprocessor",
 ]
+CAREFUL = "primkit.course.executing.CarefulExecute"  # in the place of nbgrader's own way to execute
 LATE_STEP = "AssignLatePenalties.plugin_class=primkit.course.late.LateRule"
 CONFIG = f'''\
 """nbgrader's settings for this course: read whenever nbgrader runs in this folder."""
@@ -62,7 +62,7 @@ c.WholeNotebook.course = course
 
 # Submissions run with primkit's careful way to execute in the place of nbgrader's own.
 c.Autograde.autograde_preprocessors = [
-    "primkit.course.executing.CarefulExecute",
+    "{CAREFUL}",
     "nbgrader.preprocessors.IgnorePattern",
     "nbgrader.preprocessors.LimitOutput",
     "nbgrader.preprocessors.SaveAutoGrades",
@@ -144,11 +144,7 @@ class Course:
         known = self.sets()
         if name in known:
             return name
-        near = get_close_matches(name, known, n=1)
-        raise ValueError(
-            f"there is no problem set {name!r}"
-            + (f"; did you mean {near[0]!r}?" if near else f"; there are {', '.join(known) or 'none'}")
-        )
+        raise ValueError(f"there is no problem set {name!r}; there are {', '.join(known) or 'none'}")
 
     def salt(self) -> str:
         """Return the secret behind the personal maps."""

@@ -29,14 +29,13 @@ from typing import Any
 
 from nbclient.exceptions import CellTimeoutError, DeadKernelError
 from nbclient.util import run_sync
-from nbformat.v4 import new_output
 from traitlets import Float, Integer
 
 from ..formats import save_scans
 from ..world import World
 from .confining import UNCOUNTED, UNPROTECTED, confined_by, processes_are_limited
 from .course import SCANS, Course
-from .grading.judging import Judging, hidden_tests_of
+from .grading.judging import Judging, error_output, hidden_tests_of
 from .grading.task import Missing, missing
 from .grading.workers import Workers
 from .own_kernel import OwnKernel
@@ -97,9 +96,10 @@ class CarefulExecute(OwnKernel):
         with tempfile.TemporaryDirectory(prefix="primkit-", ignore_cleanup_errors=True) as scratch:
             self.prepare(Path(scratch), self.judging.without if self.judging else ())
             self.given, self.work = Path(scratch, "given"), Path(scratch, "work")
-            shutil.copytree(folder, self.given, copy_function=_copy_file, symlinks=False, ignore=_links)
+            # What is in a file, and not who may write it; no links, for what they lead to was not handed in.
+            shutil.copytree(folder, self.given, copy_function=shutil.copyfile, ignore=_links)
             self.world = self._place_scans(about["student"])
-            shutil.copytree(self.given, self.work, copy_function=_copy_file, dirs_exist_ok=True)
+            shutil.copytree(self.given, self.work, copy_function=shutil.copyfile, dirs_exist_ok=True)
             seconds = (self.judging and self.judging.seconds) or self.seconds
             self.workers = Workers(Path(scratch, "run"), self.spent, seconds, None if FORKS else self._serve)
             resources["metadata"]["path"] = str(self.work)
@@ -204,11 +204,10 @@ class CarefulExecute(OwnKernel):
 
     def _has_served(self) -> bool:
         with suppress(Empty):
-            while (
-                run_sync(self.kc.get_shell_msg)(timeout=SERVED_SECONDS)["parent_header"].get("msg_id") != self.serving
-            ):
-                pass
-            return True
+            while True:
+                answer = run_sync(self.kc.get_shell_msg)(timeout=SERVED_SECONDS)
+                if answer["parent_header"].get("msg_id") == self.serving:
+                    return True
         return False
 
     def _catch_up(self, index: int, resources: Any) -> None:
@@ -221,7 +220,7 @@ class CarefulExecute(OwnKernel):
             if self._graded(cell):
                 self._leave_twin(earlier)
                 continue
-            problem = self._run(_copy_cell(cell), resources, earlier)
+            problem = self._run(type(cell)(cell, outputs=[]), resources, earlier)
             self.nb.cells[earlier] = cell  # its outputs are those of the first time
             self._restore_files(earlier, told=True)
             if problem:  # this time it is guilty: once more, without it
@@ -235,12 +234,8 @@ class CarefulExecute(OwnKernel):
     def _blame(self, index: int, name: str, sentence: str) -> None:
         """Let a cell fail, with a sentence that says why."""
         cell = self.nb.cells[index]
-        traceback = [f"\x1b[0;31m{name}\x1b[0m: {sentence}"]
-        cell.outputs = [
-            *(output for output in cell.outputs if output.output_type != "execute_result"),
-            # nbformat gives its functions no types
-            new_output("error", ename=name, evalue=sentence, traceback=traceback),  # type: ignore[no-untyped-call]
-        ]
+        kept = [output for output in cell.outputs if output.output_type != "execute_result"]
+        cell.outputs = [*kept, error_output(name, sentence)]
         self.failed[index] = name, f"{name}: {sentence}"
         self._note(index, name, sentence)
 
@@ -299,13 +294,7 @@ class CarefulExecute(OwnKernel):
 
 
 def _links(folder: str, names: list[str]) -> list[str]:
-    """Name the links in a folder: what they lead to was not handed in."""
     return [name for name in names if Path(folder, name).is_symlink()]
-
-
-def _copy_file(source: str, target: str) -> str:
-    """Copy what is in a file, and not who may write it."""
-    return str(shutil.copyfile(source, target, follow_symlinks=False))
 
 
 def _same(given: Path, now: Path) -> bool:
@@ -317,9 +306,3 @@ def _same(given: Path, now: Path) -> bool:
 
 def _failed_with(name: str, cell: Any) -> bool:
     return any(output.get("ename") == name for output in cell.outputs)
-
-
-def _copy_cell(cell: Any) -> Any:
-    copy = type(cell)(cell)
-    copy.outputs = []
-    return copy

@@ -11,7 +11,6 @@ Out: the gradebook, ``autograded/`` and ``feedback/``, each as soon as it is don
 
 from __future__ import annotations
 
-import json
 import os
 import sqlite3
 import time
@@ -19,7 +18,6 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import closing, contextmanager
-from typing import Any
 
 import psutil
 
@@ -29,8 +27,8 @@ from .graded import Graded, Journal
 from .handed_in import Fault, file_faults, strangers, tree_hash
 from .handing_back import finish_feedback, unmarked_answers
 from .late import NBGRADER_TIME, Late
-from .moved import refuse_old_names
-from .running import nbgrader
+from .notebooks import read_notebook
+from .running import OUT_OF_TIME, nbgrader
 
 SUBMISSION_SECONDS = 1800.0  # for one submission: far more than its cells' own limits come to
 SUBMISSION_BYTES = 4 * 2**30  # of memory for one submission, as in a new course's settings
@@ -47,7 +45,7 @@ def grade(
 ) -> list[Fault]:
     """Grade all submissions of a problem set, and return what went wrong, one fault for each thing.
 
-    Raises ValueError if nothing was handed in or released, the course names what has moved, or another command grades.
+    Raises ValueError if nothing was handed in or released, or another command grades.
 
     Parameters
     ----------
@@ -69,7 +67,8 @@ def grade(
         folders = [course.root / "submitted" / student / name for student in course.submitted(name)]
         before, start = tree_hash(*folders), time.monotonic()
         journal, counts = Journal(course, name), Counter[str]()
-        _set_due(course, name)
+        if (due := Late.of(course.root).due.get(name)) is not None:  # from there nbgrader counts how late each is
+            nbgrader(course, "db", "assignment", "add", name, f"--duedate={due.strftime(NBGRADER_TIME)}")
         with ThreadPoolExecutor(most) as pool:
             running = [pool.submit(_grade_one, course, name, student, journal, again) for student in students]
             try:
@@ -107,12 +106,6 @@ def _alone(course: Course, name: str) -> Iterator[None]:
         yield
 
 
-def _set_due(course: Course, name: str) -> None:
-    """Tell the gradebook when a set is due: it counts from there how late a submission is."""
-    if (due := Late.of(course.root).due.get(name)) is not None:
-        nbgrader(course, "db", "assignment", "add", name, f"--duedate={due.strftime(NBGRADER_TIME)}")
-
-
 def _students_to_grade(course: Course, name: str, only: Sequence[str]) -> list[str]:
     """Return who is graded, or say in one sentence why nobody can be."""
     everybody = course.submitted(name)
@@ -122,7 +115,6 @@ def _students_to_grade(course: Course, name: str, only: Sequence[str]) -> list[s
         raise ValueError(f"nothing was handed in: run `primkit teach collect {name} DOWNLOAD` first, in {course.root}")
     if not (course.root / "release" / name).is_dir():
         raise ValueError(f"{name} was not released: run `primkit teach release {name}` first, for nbgrader needs it")
-    refuse_old_names(course, name)
     return list(only) or everybody
 
 
@@ -135,8 +127,9 @@ def _grade_one(course: Course, name: str, student: str, journal: Journal, again:
             return Graded(student, "unchanged", "graded before, and not changed since")
         faults = file_faults(course, name, student) or list(_run(course, name, student))
         graded = not faults
-        if graded:
-            faults += _read_faults(course, name, student)
+        for notebook in course.notebooks(name) if graded else ():  # what happened while its cells ran
+            ran = read_notebook(course.root / "autograded" / student / name / f"{notebook}.ipynb")
+            faults += [Fault(student, **fault) for fault in ran["metadata"].get("primkit", {}).get("faults", ())]
         if _hash(course, name, student) != hashed:
             says = "while it ran, files in submitted/, source/ or grader/ changed"
             faults.append(Fault(student, "-", "changed files", says))
@@ -166,17 +159,10 @@ def _run(course: Course, name: str, student: str) -> Iterator[Fault]:
     run = ("autograde", *whose, f"--Autograde.sanitize_preprocessors={SANITIZE_STEPS}", f"--{LATE_STEP}")
     tell = ("generate_feedback", *whose, f"--GenerateFeedback.preprocessors={FEEDBACK_STEPS}")
     log = course.reports(name) / "log" / f"{student}.txt"
-    done = nbgrader(course, *run, "&&", *tell, log=log, seconds=SUBMISSION_SECONDS)
-    if done.code != 0 and not done.stopped:
+    for _ in range(2):
         done = nbgrader(course, *run, "&&", *tell, log=log, seconds=SUBMISSION_SECONDS)
-    if done.code != 0:
-        yield Fault(student, "-", "not graded", f"nbgrader could not grade it: {done.reason}")
-
-
-def _read_faults(course: Course, name: str, student: str) -> Iterator[Fault]:
-    """Yield what happened while the cells ran."""
-    for notebook in course.notebooks(name):
-        path = course.root / "autograded" / student / name / f"{notebook}.ipynb"
-        noted: Any = json.loads(path.read_text(encoding="utf-8"))["metadata"].get("primkit", {})
-        for fault in noted.get("faults", ()):
-            yield Fault(student, fault["cell"], fault["name"], fault["says"])
+        if done.code == 0:
+            return
+        if done.code == OUT_OF_TIME:
+            break
+    yield Fault(student, "-", "not graded", f"nbgrader could not grade it: {done.reason}")

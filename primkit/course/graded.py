@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -64,8 +64,8 @@ class Journal:
         """Write down what came out for a student."""
         if done.verdict == "unchanged":
             return
-        told = [fault.data() for fault in done.faults]
-        self.entries[done.student] = {"hash": done.hash, "graded": done.verdict == "graded", "faults": told}
+        faults = [asdict(fault) for fault in done.faults]
+        self.entries[done.student] = {"hash": done.hash, "graded": done.verdict == "graded", "faults": faults}
         write_atomically(self.path, json.dumps(self.entries, indent=1, sort_keys=True))
 
     def faults(self) -> list[Fault]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 from ..arguments import short
@@ -28,10 +28,6 @@ class Fault:
     cell: str
     name: str
     says: str
-
-    def data(self) -> dict[str, str]:
-        """Return it as plain values."""
-        return asdict(self)
 
 
 def file_faults(course: Course, name: str, student: str) -> list[Fault]:
@@ -87,11 +83,7 @@ def _not_a_notebook(path: Path) -> str | None:
 
 
 def tree_hash(*folders: Path) -> str:
-    """Return a hash of all files in folders: their names and what is in them.
-
-    >>> tree_hash() == tree_hash()
-    True
-    """
+    """Return a hash of all files in folders: their names and what is in them."""
     digest = hashlib.sha256()
     for folder in folders:
         for path in sorted(folder.rglob("*")):

@@ -11,9 +11,8 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from html import escape
-from typing import Any
 
 from ..formats.files import write_atomically
 from ..table import count
@@ -112,8 +111,7 @@ def finish_feedback(
         page = course.root / "feedback" / student / name / f"{notebook}.html"
         if faults:
             page.parent.mkdir(parents=True, exist_ok=True)
-            says = " ".join(map(_as_sentence, faults))
-            html = PAGE.format(escape(notebook), escape(says))
+            html = PAGE.format(escape(notebook), escape(" ".join(map(_as_sentence, faults))))
         elif page.is_file():
             html = page.read_text(encoding="utf-8").replace("<head>", f"<head>\n{NO_SCRIPTS}", 1)
             html = re.sub(r'(<a href="#([\w.-]+)">)Test cell</a>', r"\1\2</a>", html)  # in the page's head
@@ -147,19 +145,3 @@ def _say_unmarked(html: str, cells: Iterable[str]) -> str:
         html = re.sub(place, r"\1Not yet marked, of \2", html, flags=re.DOTALL)
     told = f"Not yet marked: {', '.join(cells)}. The score does not count that yet."
     return re.sub(HEADING, rf"\g<0><p><b>{escape(told)}</b></p>", html, count=1)
-
-
-def state(entry: Mapping[str, Any] | None, *, handed_in: bool, open_cells: int, listed: bool) -> str:
-    """Return how it stands with a submission, in a few words.
-
-    >>> state({"graded": True}, handed_in=True, open_cells=1, listed=True)
-    'graded; 1 to be marked by hand'
-    >>> state(None, handed_in=False, open_cells=0, listed=True)
-    'nothing handed in'
-    """
-    if entry is None:
-        words = ["not yet graded" if handed_in else "nothing handed in"]
-    else:
-        words = ["graded" if entry["graded"] else "could not be graded"]
-        words += [f"{open_cells} to be marked by hand"] * bool(entry["graded"] and open_cells)
-    return "; ".join(words + ["not in students.csv"] * (not listed))

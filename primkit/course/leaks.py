@@ -28,7 +28,7 @@ from typing import Any
 
 from ..formats.files import naming, open_archive, unpacked
 from .course import SALT
-from .notebooks import text_of
+from .notebooks import read_notebook, text_of
 
 MOST_UNPACKED = 2**28  # bytes of one file in an archive
 PIECE_TOKENS = 16  # about a line
@@ -78,7 +78,7 @@ def secrets_of(folder: Path) -> Secrets:
     """Return the secrets of a folder with ``source/`` and ``grader/``, and perhaps a salt."""
     secrets, public = Secrets(), set[Piece]()
     for path in sorted((folder / "source").rglob("*.ipynb")):
-        for cell in _cells(path):
+        for cell in read_notebook(path)["cells"]:
             shown, hidden = _split(text_of(cell))
             public.update(pieces(shown))
             for part in hidden:
@@ -220,21 +220,14 @@ def _of_file(name: str, data: bytes) -> Iterator[tuple[str, str, str]]:
         return
     text = data.decode("utf-8", "replace")  # in a binary file, words can still be found
     if name.endswith(".ipynb"):
-        try:
-            yield from ((name, place, part) for place, part in _of_notebook(json.loads(text)))
+        with suppress(ValueError, RecursionError):  # what is no JSON is looked through as text
+            told = json.loads(text)
+            cells = told.pop("cells", None) if isinstance(told, dict) else None
+            places = [(f"cell {n}", cell) for n, cell in enumerate(cells if isinstance(cells, list) else [cells], 1)]
+            for place, held in [*places, ("the notebook's metadata", told)]:
+                yield from ((name, place, words) for words in _strings(held))
             return
-        except (ValueError, AttributeError, TypeError):
-            pass  # no notebook: as text, then
     yield name, "text", html.unescape(text) if name.endswith((".html", ".svg")) else text
-
-
-def _of_notebook(notebook: Any) -> Iterator[tuple[str, str]]:
-    """Yield the places of a notebook and all texts there, in whatever they lie."""
-    for text in _strings(notebook.get("metadata", {})):
-        yield "the notebook's metadata", text
-    for number, cell in enumerate(notebook["cells"], 1):
-        for text in _strings(cell):
-            yield f"cell {number}", text
 
 
 def _strings(value: Any) -> Iterator[str]:
@@ -250,8 +243,3 @@ def _strings(value: Any) -> Iterator[str]:
         value = [*value, *(inner for kind, inner in value.items() if kind not in PICTURE_TYPES)]
     for inner in value if isinstance(value, list) else ():
         yield from _strings(inner)
-
-
-def _cells(path: Path) -> list[dict[str, Any]]:
-    cells: list[dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))["cells"]
-    return cells

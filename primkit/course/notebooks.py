@@ -33,10 +33,6 @@ class Cells:
     marks: dict[str, dict[str, set[str]]]
     stubs: dict[str, str]
 
-    def only(self, name: str) -> str:
-        """Return a set's notebook if it has but one, else nothing."""
-        return next(iter(self.marks[name])) if len(self.marks[name]) == 1 else ""
-
 
 @dataclass(frozen=True)
 class Read:

@@ -177,18 +177,12 @@ def overview(course: Course, name: str) -> Overview:
                     line.wrong[called] += 1
                     wrong.append(Wrong(student, grade.cell.name, "", called, says))
     for (cell, part), line in lines.items():
-        if (tells := _differing(cell, part, line, tasks)) is not None:
-            faults.append(Fault("-", cell, "differing points", tells))
+        if not part and cell in tasks and (gives := tasks[cell].get("of")) != line.of:
+            says = f"the cell has {line.of:g} points, its hidden tests {gives}: mend one, then release again"
+            faults.append(Fault("-", cell, "differing points", says))
     return Overview(
         name, len(course.submitted(name)), len(scores), of, scores, tuple(lines.values()), tuple(faults), tuple(wrong)
     )
-
-
-def _differing(cell: str, part: str, line: Line, tasks: dict[str, Any]) -> str | None:
-    """Return how the points of a graded cell and of its hidden tests differ, or None."""
-    if part or cell not in tasks or tasks[cell].get("of") == line.of:
-        return None
-    return f"the cell has {line.of:g} points, its hidden tests {tasks[cell].get('of')}: mend one, then release again"
 
 
 @dataclass(frozen=True)

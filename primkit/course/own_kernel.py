@@ -118,7 +118,7 @@ class OwnKernel(Execute):  # type: ignore[misc]
             "RLIMIT_AS": self.megabytes * MEGABYTE,
             "RLIMIT_CORE": 0,
             "RLIMIT_FSIZE": FILE_MEGABYTES * MEGABYTE,
-            "RLIMIT_NPROC": most + _own_threads(),
+            "RLIMIT_NPROC": most + _threads_of(psutil.Process().username()),
         }
         self.run_silently(PREPARE.format(limits=limits), client)
         return client
@@ -211,35 +211,24 @@ def _environment(home: Path, library: Path) -> dict[str, str]:
 def _library_without(folder: Path, without: Sequence[str]) -> Path:
     """Return a copy of the library in which some modules refuse to work."""
     library = folder / PACKAGE.name
-    names = set(without)
-    ignore = shutil.ignore_patterns(*(f"{name}.*.pyc" for name in names))
-    shutil.copytree(PACKAGE, library, ignore=ignore)
+    shutil.copytree(PACKAGE, library, ignore=shutil.ignore_patterns(*(f"{name}.*.pyc" for name in without)))
     if DATA.is_dir():
         (folder / DATA.name).symlink_to(DATA)
-    for name in names:
+    for name in without:
         modules = list((library / name).glob("*.py")) or [library / f"{name}.py"]
         shutil.rmtree(library / name / "__pycache__", ignore_errors=True)
         for module in modules:
-            module.write_text(_hollow(module.read_text(encoding="utf-8"), f"primkit.{name}"), encoding="utf-8")
+            tree = ast.parse(module.read_text(encoding="utf-8"))
+            for node in ast.walk(tree):  # constants and classes stay, for others need them
+                if isinstance(node, ast.FunctionDef) and not node.name.startswith("__"):
+                    node.body = ast.parse(f"raise RuntimeError({REFUSES.format(f'primkit.{name}')!r})").body
+            module.write_text(ast.unparse(tree), encoding="utf-8")
     return library
 
 
-def _hollow(source: str, name: str) -> str:
-    """Return a module whose functions refuse to work; its constants and classes stay, for others need them."""
-    tree = ast.parse(source)
-    for node in ast.walk(tree):
-        if isinstance(node, ast.FunctionDef) and not node.name.startswith("__"):
-            node.body = ast.parse(f"raise RuntimeError({REFUSES.format(name)!r})").body
-    return ast.unparse(tree)
-
-
-def _own_threads() -> int:
-    """Return how many threads this user has by now: the system's limit counts them all."""
-    user, threads = psutil.Process().username(), 0
-    for process in psutil.process_iter(["username", "num_threads"]):
-        if process.info["username"] == user:
-            threads += process.info["num_threads"] or 0
-    return threads
+def _threads_of(user: str) -> int:  # by now: the system's limit counts them all
+    processes = [process.info for process in psutil.process_iter(["username", "num_threads"])]
+    return sum(each["num_threads"] or 0 for each in processes if each["username"] == user)
 
 
 def _memory(process: psutil.Process, kind: str = "rss") -> float:

@@ -24,13 +24,8 @@ from .course import Course
 from .notebooks import marked
 
 BROWSERS = (
-    "chromium",
-    "chromium-browser",
-    "google-chrome",
-    "google-chrome-stable",
-    "chrome",
-    "msedge",
-    "microsoft-edge",
+    *("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"),
+    *("msedge", "microsoft-edge"),
 )
 PLACES = (  # where no command leads to them
     "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",

@@ -20,7 +20,6 @@ from ..formats import save_scans
 from ..table import as_csv
 from .course import SCANS, STUDENTS, Course
 from .leaks import find_leaks, secrets_of
-from .moved import refuse_old_names
 from .notebooks import marked, read_notebook, text_of
 from .personal import personal_scans, personal_world
 from .running import Done, nbgrader
@@ -30,10 +29,9 @@ from .students import STUDENT_COLUMNS
 def release(course: Course, name: str, *, say: Callable[[str], None]) -> None:
     """Make the students' version of a problem set, and their personal maps if it has any.
 
-    Raises ValueError if the course names what has moved, nbgrader refuses the problem set, a solution is found in what
-    it made, or a task is gone whose answers were handed in; then nothing has changed.
+    Raises ValueError if nbgrader refuses the problem set, a solution is found in what it made, or a task is gone whose
+    answers were handed in; then nothing has changed.
     """
-    refuse_old_names(course, name, released=False)
     students = course.roster()
     say(f"nbgrader makes release/{name}: this takes some seconds")
     folder = course.root / ".primkit"

@@ -23,7 +23,7 @@ from ..table import Table, as_csv, count
 from .course import Course
 from .graded import Journal
 from .handed_in import listed_students
-from .handing_back import state, unmarked_answers
+from .handing_back import unmarked_answers
 from .overview import KINDS_FILE, KINDS_HEADER, Line, Overview, kinds_rows, overview
 from .running import nbgrader
 from .students import Student
@@ -44,7 +44,7 @@ def report(course: Course, name: str) -> Iterator[str]:
         "overview.csv": (OVERVIEW_HEADER, _overview_rows(seen)),
         "wrong.csv": (("student", "task", "part", "name", "what"), (astuple(wrong) for wrong in seen.wrong)),
         KINDS_FILE: (KINDS_HEADER, list(kinds_rows(course, seen))),
-        "faults.csv": (("student", "cell", "name", "what"), (tuple(fault.data().values()) for fault in seen.faults)),
+        "faults.csv": (("student", "cell", "name", "what"), (astuple(fault) for fault in seen.faults)),
     }
     for file, (header, rows) in tables.items():
         write_atomically(folder / file, as_csv(header, rows))
@@ -61,7 +61,12 @@ def report(course: Course, name: str) -> Iterator[str]:
         with open(folder / "grades.csv", encoding="utf-8", newline="") as export:
             grades = list(csv.DictReader(export))
         write_atomically(folder / "class.csv", as_csv(*_by_student(course, grades)))
-        yield from _missing_sets(course, {row["assignment"] for row in grades})
+        graded, there = {row["assignment"] for row in grades}, course.sets()
+        for each in sorted(set(there) - graded):
+            if (course.root / "release" / each).is_dir():
+                yield f"missing set: {each} is released, and not in the gradebook: release it again"
+        for each in sorted(graded - set(there)):
+            yield f"missing set: {each} is in the gradebook, and not in source/: class.csv counts its points"
     yield ""
     yield f"Wrote  {', '.join([*tables, 'overview.png'])} in {folder}"
     yield (
@@ -97,21 +102,17 @@ def _states(course: Course, name: str) -> Callable[[str], str]:
         return lambda _student: "not in source/"
     entries, handed_in = Journal(course, name).entries, course.submitted(name)
     open_cells, listed = unmarked_answers(course, name), listed_students(course)
-    return lambda student: state(
-        entries.get(student),
-        handed_in=student in handed_in,
-        open_cells=len(open_cells.get(student, ())),
-        listed=not listed or student in listed,
-    )
 
+    def state(student: str) -> str:
+        if (entry := entries.get(student)) is None:
+            words = ["not yet graded" if student in handed_in else "nothing handed in"]
+        elif entry["graded"]:
+            words = ["graded"] + [f"{len(cells)} to be marked by hand" for cells in [open_cells[student]] if cells]
+        else:
+            words = ["could not be graded"]
+        return "; ".join(words + ["not in students.csv"] * bool(listed and student not in listed))
 
-def _missing_sets(course: Course, graded: set[str]) -> Iterator[str]:
-    """Yield a line for each set that the gradebook has and the course not, or the other way round."""
-    released = {name for name in course.sets() if (course.root / "release" / name).is_dir()}
-    for name in sorted(released - graded):
-        yield f"missing set: {name} is released, and not in the gradebook: release it again"
-    for name in sorted(graded - {*course.sets()}):
-        yield f"missing set: {name} is in the gradebook, and not in source/: class.csv counts its points"
+    return state
 
 
 def _spread(scores: Sequence[float], of: float) -> str:

@@ -65,11 +65,6 @@ class Done:
     log: str
 
     @property
-    def stopped(self) -> bool:
-        """Whether its time was over."""
-        return self.code == OUT_OF_TIME
-
-    @property
     def reason(self) -> str:
         """The line that names the error: the traceback's last, or nbgrader's first complaint."""
         lines = [line.strip() for line in self.log.splitlines() if line.strip()]
@@ -85,7 +80,10 @@ def nbgrader(course: Course, *words: str, log: Path | None = None, seconds: floa
         # A file, not a pipe: a pipe stays open for as long as anything lives that a submission has started.
         said = Path(folder, "said")
         said.touch()
-        code = _run(commands, str(course.root), _environment(), str(said), seconds)
+        # Where nbgrader finds alembic, which it calls by its name.
+        places = filter(None, [sysconfig.get_path("scripts"), os.environ.get("PATH")])
+        environment = {**os.environ, "PATH": os.pathsep.join(places), "PYTHONUTF8": "1"}
+        code = _run(commands, str(course.root), environment, str(said), seconds)
         text = said.read_bytes().decode("utf-8", "replace").replace("\r\n", "\n")
     over = f"\nTimeoutError: nbgrader was stopped after {seconds:g} s" if code == OUT_OF_TIME else ""
     result = Done(code, text + over)
@@ -113,9 +111,3 @@ def _run(*command: object) -> int:
         return nursery.wait()
     IDLE.put(nursery)
     return int(said)
-
-
-def _environment() -> dict[str, str]:
-    """Return an environment that finds alembic, which nbgrader calls by its name."""
-    paths = filter(None, [sysconfig.get_path("scripts"), os.environ.get("PATH")])
-    return {**os.environ, "PATH": os.pathsep.join(paths), "PYTHONUTF8": "1"}

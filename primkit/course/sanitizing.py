@@ -96,7 +96,7 @@ def _put_back(nb: Any, released: list[Any]) -> list[str]:
             continue
         if name in names:
             place = names.index(name) + 1
-        elif _needed(cell):
+        elif cell.metadata.nbgrader.get("grade") or (cell.metadata.nbgrader.get("locked") and cell.cell_type == "code"):
             back = type(cell)({key: value for key, value in cell.items() if key != "id"})
             note = new_markdown_cell(f"*The cell* `{name}` *{MISSING}.*")  # type: ignore[no-untyped-call]
             note.pop("id", None)
@@ -112,9 +112,3 @@ def _mark(cell: Any) -> str | None:
     """Return the name that nbgrader knows a cell by."""
     name = (cell["metadata"].get("nbgrader") or {}).get("grade_id")
     return name if isinstance(name, str) else None
-
-
-def _needed(cell: Any) -> bool:
-    """Tell whether a submission needs this cell of the release."""
-    about = cell["metadata"]["nbgrader"]
-    return bool(about.get("grade") or (about.get("locked") and cell["cell_type"] == "code"))

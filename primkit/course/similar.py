@@ -44,8 +44,14 @@ class Pair:
 
 
 def report_pairs(course: Course, name: str) -> Iterator[str]:
-    """Yield what is said about the pairs of a problem set, and write ``similar.csv``."""
-    pairs = similar_pairs(course, name)
+    """Yield what is said about the pairs of a problem set, and write ``similar.csv``.
+
+    Raises ValueError if fewer than two have handed in.
+    """
+    codes = {student: "\n".join(_code(course, "submitted", student, name)) for student in course.submitted(name)}
+    if len(codes) < 2:
+        raise ValueError(f"{name} was handed in by {count(len(codes), 'student')}: there must be two to compare")
+    pairs = pairs_in(codes, "\n".join(_code(course, "release", ".", name)))
     rows = [(pair.first, pair.second, pair.alike, pair.pieces, *pair.passage) for pair in pairs]
     header = ("first", "second", "alike", "pieces", "passage_first", "passage_second")
     write_atomically(course.reports(name) / "similar.csv", as_csv(header, rows))
@@ -57,14 +63,8 @@ def report_pairs(course: Course, name: str) -> Iterator[str]:
     yield f"{count(len(pairs), 'pair')} more alike than {name} makes them, in {course.reports(name) / 'similar.csv'}"
 
 
-def similar_pairs(course: Course, name: str) -> list[Pair]:
-    """Return the pairs of a problem set that are more alike than the task makes them, the most alike first."""
-    codes = {student: "\n".join(_code(course, "submitted", student, name)) for student in course.submitted(name)}
-    return pairs_in(codes, "\n".join(_code(course, "release", ".", name)))
-
-
 def pairs_in(codes: Mapping[str, str], given: str) -> list[Pair]:
-    r"""Return the pairs among programs that share more than what was given and what many have.
+    r"""Return the pairs among programs that share more than what was given and what many have, the most alike first.
 
     >>> loop = "sum = 0\nfor value in values:\n    if value > most:\n        sum += value ** 2 - gap\nprint(sum / 2)"
     >>> other = "keep = values[values > most]\nprint(np.sum(keep * keep) - gap * len(keep) + np.median(values) * 0)"

@@ -82,11 +82,11 @@ class Judging:
             except KeyboardInterrupt:
                 raise
             except OutOfTime as stop:
-                error, late = _error("CellTimeoutError", f"{stop}, twice", ""), True
+                error, late = error_output("CellTimeoutError", f"{stop}, twice"), True
             except Ended as ended:
-                error = _error("KernelDied", str(ended), "")
+                error = error_output("KernelDied", str(ended))
             except BaseException as wrong:
-                error = _error(type(wrong).__name__, str(wrong), "\n".join(_places(wrong, source)))
+                error = error_output(type(wrong).__name__, str(wrong), "\n".join(_places(wrong, source)))
         outputs = [_output("stream", name="stdout", text=said.getvalue())] if said.getvalue() else []
         outputs += [_output("display_data", data=mark._repr_mimebundle_()) for mark in marks]
         if value is not None:
@@ -165,7 +165,8 @@ def _places(wrong: BaseException, source: str) -> Iterator[str]:
     yield from getattr(wrong, "where", "").splitlines()
 
 
-def _error(name: str, sentence: str, where: str) -> Any:
+def error_output(name: str, sentence: str, where: str = "") -> Any:
+    """Return an error as a cell shows it."""
     told = [where] * bool(where) + [f"\x1b[0;31m{name}\x1b[0m: {sentence}"]
     return _output("error", ename=name, evalue=sentence, traceback=told)
 

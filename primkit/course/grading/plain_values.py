@@ -139,7 +139,10 @@ def _read(value: Any, depth: int) -> Any:
     if name == "dict":
         return {_read(key, depth - 1): _read(part, depth - 1) for key, part in content}
     if name == "Generator":
-        return _read_generator(*content)
+        kinds = (np.random.PCG64, np.random.PCG64DXSM, np.random.Philox, np.random.SFC64)
+        generator = np.random.Generator({kind.__name__: kind for kind in kinds}[content[0]](0))
+        generator.bit_generator.state = _read(content[1], DEPTH)
+        return generator
     parts = [_read(part, depth - 1) for part in content]
     if name in GROUPS:
         return GROUPS[name](parts)
@@ -158,10 +161,3 @@ def _read_array(kind: str, shape: list[int], content: str) -> Any:
     if array.dtype.kind == "U":
         data.decode("utf-32-be" if kind.startswith(">") else "utf-32-le")  # each is a letter, or this says so
     return array
-
-
-def _read_generator(name: str, state: Any) -> Any:
-    bits = {kind.__name__: kind for kind in (np.random.PCG64, np.random.PCG64DXSM, np.random.Philox, np.random.SFC64)}
-    generator = np.random.Generator(bits[name](0))
-    generator.bit_generator.state = _read(state, DEPTH)
-    return generator

@@ -35,6 +35,7 @@ from .plain_values import pack, stranger
 from .wire import FAMILY, MOST_BYTES, HungUpError, hear, say
 
 MESSAGE_LETTERS = 500  # of an error
+MOST_LINES = 5  # of a student's, that an error comes from
 
 
 def leave_twin(address: Any, cell: int, scope: dict[str, Any]) -> None:
@@ -131,13 +132,9 @@ def _called(function: Callable[..., Any], args: Any, options: Any) -> tuple[Any,
             result = function(*args, **options)
     except BaseException as error:
         kinds = [kind.__name__ for kind in type(error).__mro__]
-        return "raised", kinds, str(error)[:MESSAGE_LETTERS], _place_of(error)
+        library = tuple({sys.prefix, sys.base_prefix, str(Path(__file__).resolve().parents[3])})
+        own = [line for line in traceback.extract_tb(error.__traceback__) if not line.filename.startswith(library)]
+        where = "\n".join(f"line {line.lineno}: {line.line}" for line in own[-MOST_LINES:])
+        return "raised", kinds, str(error)[:MESSAGE_LETTERS], where
     said = {"prints": bool(out.tell()), "writes to stderr": bool(err.tell())}
     return "returned", result, {"changes what it is given": pack(kept) != given, **said}
-
-
-def _place_of(error: BaseException) -> str:
-    """Return the student's lines of a traceback."""
-    library = tuple({sys.prefix, sys.base_prefix, str(Path(__file__).resolve().parents[3])})
-    own = [line for line in traceback.extract_tb(error.__traceback__) if not line.filename.startswith(library)]
-    return "\n".join(f"line {line.lineno}: {line.line}" for line in own[-5:])

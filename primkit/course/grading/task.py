@@ -3,12 +3,6 @@
 In:  the student's function, or its name and where to look it up.
 Out: the points, all or none for each part, and a table of what is off.
 
->>> from primkit.checks import Check, judges
->>> half = Check("half", lambda x: x / 2, lambda rng: [(1.0,), (3.0,)], judges.number("m"))
->>> Task("half", [Part("halves lengths", 2, half)]).marked(lambda x: 0.5)
-half: 0 of 2 points
-✗ 0 of 2  halves lengths: in 1 of 2 cases. For example half(x=3): got 0.5 m, expected 1.5 m.
-
 The last expression of a grade cell is ``task.mark("half", globals())``: nbgrader reads its number as the cell's points.
 When a submission is graded, this cell runs in the judge's process, and what stands in ``globals()`` under a student's
 name is a ``Remote``: see ``workers.py``. In a teacher's own notebook it is the function itself, and the same values
@@ -80,10 +74,6 @@ class Missing:
 
     name: str
     answer: Answer
-
-    def afresh(self) -> Missing:
-        """Return itself."""
-        return self
 
     def __call__(self, *_args: Any) -> Any:
         """Say what Python says."""

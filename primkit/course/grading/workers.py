@@ -190,7 +190,10 @@ class Remote:
         self.workers, self.cell, self.__name__ = workers, cell, name
         arguments, source = told if isinstance(told, tuple) and len(told) == 2 else (None, None)
         self.__signature__ = _signature(arguments)
-        self.source = _source(source)
+        # Pieces as they were told, (first line, text); none where they are too long or no such thing.
+        told = source if isinstance(source, list) else []
+        right = all(isinstance(p, tuple) and list(map(type, p)) == [int, str] and p[0] > 0 for p in told)
+        self.source = told if right and sum(len(text) for _, text in told) <= SOURCE_LETTERS else []
         self.remarks: set[str] = set()
         self.searched_until = math.inf  # by this process's time
 
@@ -263,13 +266,6 @@ def _raised(kinds: Any, message: Any, where: Any) -> BaseException:
     words = str(message)
     kind = type(name[:60], (base,), {"__str__": lambda _self: words, "where": str(where)})
     return kind(words)
-
-
-def _source(told: Any) -> list[tuple[int, str]]:
-    """Return pieces of source as they were told, (first line, text); none where they are too long or no such thing."""
-    pieces = told if isinstance(told, list) else []
-    right = all(isinstance(p, tuple) and list(map(type, p)) == [int, str] and p[0] > 0 for p in pieces)
-    return pieces if right and sum(len(text) for _, text in pieces) <= SOURCE_LETTERS else []
 
 
 def _signature(told: Any) -> inspect.Signature | None:
