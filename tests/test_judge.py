@@ -7,7 +7,7 @@ import sys
 import tempfile
 import threading
 import time
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -239,25 +239,29 @@ def test_t17_a_loop_that_never_ends_takes_no_time_of_the_next_cell():
         while True:
             pass
 
+    def used():
+        return sum(spent(pid) for pid in pids if psutil.pid_exists(pid))
+
     pids = []
-    with tempfile.TemporaryDirectory() as folder:
-        workers = Workers(Path(folder), lambda: sum(spent(pid) for pid in pids if psutil.pid_exists(pid)), 0.3)
-        for cell in (3, 4):
-            pids.append(os.fork())
-            if not pids[-1]:
-                try:
-                    serving._wait(serving._greet(workers.address, cell, "twin"), workers.address, cell, {"f": loops})
-                finally:
-                    os._exit(0)
-        while len(workers.twins) < 2:
-            workers.meet()
-        with pytest.raises(OutOfTime):
-            remote(workers, "f")()
-        workers.start(4)
-        before = workers.spent()
-        time.sleep(1.0)
-        assert workers.spent() - before < 0.1
-        workers.close()
+    try:
+        with tempfile.TemporaryDirectory() as folder, closing(Workers(Path(folder), used, 0.3)) as workers:
+            for cell in (3, 4):
+                pids.append(os.fork())
+                if not pids[-1]:
+                    try:
+                        line = serving._greet(workers.address, cell, "twin")
+                        serving._wait(line, workers.address, cell, {"f": loops})
+                    finally:
+                        os._exit(0)
+            while len(workers.twins) < 2:
+                workers.meet()
+            with pytest.raises(OutOfTime):
+                remote(workers, "f")()
+            workers.start(4)
+            before = workers.spent()
+            time.sleep(1.0)
+            assert workers.spent() - before < 0.1
+    finally:
         for pid in pids:
             os.waitpid(pid, 0)
 
