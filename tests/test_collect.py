@@ -546,6 +546,13 @@ def test_the_command_ends_with_a_table(course):
     assert "Moodle's name 'Grace Hopper' is nobody's in the list of students: mend the list, or put it into" in said
 
 
+@pytest.mark.parametrize("place", [".", "..", "autograded", "submitted/ada"])
+def test_the_course_itself_is_no_download(course, place):
+    """What was graded came back as later submissions."""
+    with pytest.raises(ValueError, match="is the course's own, with what was graded in it: give the download"):
+        collect(course, "ps1", [course.root / place])
+
+
 def test_without_a_list_nobody_is_placed(tmp_path):
     made = new_course(tmp_path / "course", ASSIGNMENTS)
     assert f"students.csv in {made.root} is empty: fill it in" in teach(made.root, "collect", PS, made.root, code=2)

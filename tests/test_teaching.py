@@ -24,7 +24,7 @@ from primkit.course.course import ASSIGNMENTS, Course, new_course
 from primkit.course.grade import _alone, _grade_one
 from primkit.course.graded import Graded, Journal
 from primkit.course.grading import MIME
-from primkit.course.handed_in import Fault, file_faults, tree_hash
+from primkit.course.handed_in import Fault, file_faults, misplaced, tree_hash
 from primkit.course.printing import BROWSERS, page, print_set
 from primkit.course.running import OUT_OF_TIME, nbgrader
 from tests.submissions import ProblemSet, about, answers_of, read
@@ -523,6 +523,20 @@ def test_grading_comes_after_releasing(course, capsys):
     shutil.copytree(course.root / "source" / PS, course.root / "submitted" / "ada" / PS)
     assert main(["teach", "grade", PS, "--course", str(course.root)]) == 2
     assert f"{PS} was not released: run `primkit teach release {PS}` first" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("place", ["ps1/ada/ps1.ipynb", "ada/ps1.ipynb", "ps1.ipynb"])
+def test_a_notebook_that_nobody_would_grade_is_named(course, place, capsys):
+    path = course.root / "submitted" / place
+    path.parent.mkdir(parents=True)
+    path.write_text("{}")
+    assert main(["teach", "grade", PS, "--course", str(course.root)]) == 2
+    sentence = "lies where nothing is graded: put it into submitted/<student>/<problem set>/"
+    assert f"nothing was handed in: submitted/{place} {sentence}" in capsys.readouterr().err
+    assert set(faults(course)) == {f"submitted/{place}"}
+    (course.root / "submitted" / "ada" / PS).mkdir(parents=True, exist_ok=True)
+    (course.root / "submitted" / "ada" / PS / "ps1.ipynb").write_text("{}")
+    assert len(misplaced(course)) == 1
 
 
 FILES = {

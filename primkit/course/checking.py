@@ -22,7 +22,7 @@ from ..table import count
 from .confining import UNPROTECTED, confined_by
 from .course import CAREFUL, COPIED_FOLDERS, SETTINGS, STUDENTS, Course
 from .grading.judging import hidden_tests_of
-from .handed_in import strangers
+from .handed_in import misplaced, strangers
 from .notebooks import marked, read_notebook, text_of
 from .students import SAVE_AS, read_students
 
@@ -100,6 +100,9 @@ def _sources(course: Course) -> Iterator[Finding]:
     if (course.root / "source").is_dir():
         sets = course.sets()
         yield Finding("problem sets", ", ".join(sets) or "none", "copy them into source/", bool(sets))
+        for fault in misplaced(course):
+            told, _, mend = fault.says.partition(": ")
+            yield Finding(fault.cell, told, mend)
 
 
 def _points(course: Course) -> Iterator[Finding]:

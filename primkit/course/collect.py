@@ -20,7 +20,7 @@ from pathlib import Path
 from nbgrader.utils import parse_utc
 
 from .archives import Found, Refused, unpack
-from .course import STUDENTS, Course
+from .course import COPIED_FOLDERS, STUDENTS, Course
 from .late import Late
 from .lms import Sender, sender_of, worksheet_times
 from .notebooks import Cells, cells_of, slim
@@ -29,6 +29,10 @@ from .versions import TIMESTAMP, Book, Version
 
 MOST_BESIDE = 32 * 2**20  # bytes of the files beside a notebook, all together
 MOST_FILES = 200  # of them
+COURSE_FOLDERS = (
+    *COPIED_FOLDERS,
+    *("release", "personal", "collected", "submitted", "autograded", "feedback", "handed_back", "paper", "reports"),
+)
 REMEDY = "mend the list, or put it into a folder with the id as its name"
 PACKING_SECONDS = 3600  # the times in an LMS's archive that lie within are when it was made
 
@@ -45,11 +49,16 @@ class Collected:
 def collect(course: Course, name: str, paths: Iterable[Path]) -> tuple[list[Collected], list[Refused]]:
     """Place what lies in these files and folders; return who has handed in until now, and what could not be placed.
 
-    Raises ValueError if a path is not there, or the list of students is empty or cannot be read.
+    Raises ValueError if a path is not there or the course's own, or the list of students is empty or cannot be read.
     """
     students = course.roster()
     if not students:
         raise ValueError(f"{STUDENTS} in {course.root} is empty: fill it in, for who handed in is found by it")
+    paths = list(paths)
+    own = [course.root / folder for folder in COURSE_FOLDERS]
+    for path in map(Path.resolve, paths):
+        if course.root.is_relative_to(path) or any(map(path.is_relative_to, own)):
+            raise ValueError(f"{path} is the course's own, with what was graded in it: give the download")
     book = Book(course, name)
     unplaced: list[Refused] = []
     sheets: dict[str, datetime] = {}

@@ -24,7 +24,7 @@ import psutil
 from ..table import count
 from .course import FEEDBACK_STEPS, LATE_STEP, SANITIZE_STEPS, Course
 from .graded import Graded, Journal
-from .handed_in import Fault, file_faults, strangers, tree_hash
+from .handed_in import Fault, file_faults, misplaced, strangers, tree_hash
 from .handing_back import finish_feedback, unmarked_answers
 from .late import NBGRADER_TIME, Late
 from .notebooks import read_notebook
@@ -90,7 +90,7 @@ def grade(
             f"{number} written {answers} to be marked by hand: in formgrader, a page of `jupyter lab`; then "
             f"`primkit teach hand-back {name}`"
         )
-    return [*strangers(course, name), *journal.faults()]
+    return [*misplaced(course), *strangers(course, name), *journal.faults()]
 
 
 @contextmanager
@@ -112,7 +112,9 @@ def _students_to_grade(course: Course, name: str, only: Sequence[str]) -> list[s
     if unknown := sorted(set(only) - set(everybody)):
         raise ValueError(f"nothing was handed in for {name} by {', '.join(unknown)}")
     if not everybody:
-        raise ValueError(f"nothing was handed in: run `primkit teach collect {name} DOWNLOAD` first, in {course.root}")
+        told = "; ".join(f"{fault.cell} {fault.says}" for fault in misplaced(course)[:1])
+        told = told or f"run `primkit teach collect {name} DOWNLOAD` first, in {course.root}"
+        raise ValueError(f"nothing was handed in: {told}")
     if not (course.root / "release" / name).is_dir():
         raise ValueError(f"{name} was not released: run `primkit teach release {name}` first, for nbgrader needs it")
     return list(only) or everybody

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..arguments import short
+from .archives import readable_name
 from .course import STUDENTS, Course
 from .notebooks import marked
 from .students import ID, ID_RULE
@@ -63,6 +64,17 @@ def strangers(course: Course, name: str) -> list[Fault]:
     unknown = [student for student in course.submitted(name) if students and student not in students]
     says = f"is not in {STUDENTS}: a typing error? rename the folder, or add a line and release again"
     return [Fault(student, "-", "not in the list", says) for student in unknown]
+
+
+def misplaced(course: Course) -> list[Fault]:
+    """Return a fault for each notebook in ``submitted/`` that no student and no problem set has."""
+    sets, faults = course.sets(), []
+    for path in sorted((course.root / "submitted").rglob("*.ipynb")):
+        where = path.relative_to(course.root).parts
+        if len(where) < 4 or where[2] not in sets:
+            says = "lies where nothing is graded: put it into submitted/<student>/<problem set>/"
+            faults.append(Fault("-", readable_name("/".join(where)), "misplaced", says))
+    return faults
 
 
 def _not_a_notebook(path: Path) -> str | None:

@@ -21,7 +21,7 @@ from ..formats.files import naming
 from .course import Course
 from .graded import Journal
 from .grading.mark import MIME
-from .handed_in import Fault, strangers
+from .handed_in import Fault, misplaced, strangers
 from .notebooks import marked, read_notebook
 from .students import read_table
 
@@ -142,7 +142,7 @@ def overview(course: Course, name: str) -> Overview:
     lines: dict[tuple[str, str], Line] = {}
     scores: dict[str, float] = {}
     wrong: list[Wrong] = []
-    faults = [*strangers(course, name), *journal.faults()]
+    faults = [*misplaced(course), *strangers(course, name), *journal.faults()]
     cells = {student: _read_cells(course, name, student) for student in students}
     tasks = {cell: shown.mark for seen in cells.values() for cell, shown in seen.items() if shown.mark}
     with Gradebook(course.gradebook) as book:
