@@ -112,13 +112,7 @@ reports/
 
 @dataclass(frozen=True)
 class Course:
-    """A course folder.
-
-    Parameters
-    ----------
-    root : str or path
-        The folder.
-    """
+    """A course, by its folder."""
 
     root: Path
 

@@ -71,7 +71,8 @@ def misplaced(course: Course) -> list[Fault]:
     sets, faults = course.sets(), []
     for path in sorted((course.root / "submitted").rglob("*.ipynb")):
         where = path.relative_to(course.root).parts
-        if len(where) < 4 or where[2] not in sets:
+        hidden = any(part.startswith(".") for part in where)  # a copy of Jupyter's, or of a collection that was stopped
+        if not hidden and (len(where) < 4 or where[2] not in sets):
             says = "lies where nothing is graded: put it into submitted/<student>/<problem set>/"
             faults.append(Fault("-", readable_name("/".join(where)), "misplaced", says))
     return faults

@@ -27,13 +27,7 @@ NBGRADER_TIME = "%Y-%m-%d %H:%M:%S.%f UTC"
 
 
 class Late:
-    """A course's due dates and its late rule.
-
-    Parameters
-    ----------
-    settings : dict
-        What ``course.toml`` holds; raises ValueError for what it cannot hold.
-    """
+    """A course's due dates and its late rule, by its settings; raises ValueError for what they cannot hold."""
 
     def __init__(self, settings: dict[str, Any]) -> None:
         if unknown := sorted({*settings} - {"due", "later", "late"}):

@@ -33,15 +33,7 @@ HIDDEN_TESTS = "grader"  # the course's package
 
 
 class Judging:
-    """The graded cells of one notebook.
-
-    Parameters
-    ----------
-    path : Path
-        The teacher's notebook.
-    missing : callable
-        Says why a name is not there.
-    """
+    """The graded cells of one notebook of the teacher's; ``missing`` says why a student's has no such name."""
 
     def __init__(self, path: Path, missing: Callable[[str], Missing]) -> None:
         notebook = json.loads(path.read_text(encoding="utf-8"))

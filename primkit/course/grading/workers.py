@@ -52,9 +52,7 @@ class Workers:
     folder : Path
         Where the socket lies.
     spent : callable
-        Tells the seconds of processor time that the kernel and its twins have used so far.
-    seconds : float
-        How many of them each worker has.
+        Tells the seconds of processor time that the kernel and its twins have used so far; each worker has ``seconds``.
     make : callable, optional
         Makes a worker for a cell, where there are no twins.
     """
