@@ -27,6 +27,7 @@ CASES = 40  # random ones, in each part
 PHASES = 12  # turns of a hexagon that are tried, within a sixth of a full turn
 PLAINLY = 1.1  # the wrong outline must miss the points by so much more than the right one
 BENT = 0.0403  # a regular hexagon of reach 1 misses its best circle by this much, root mean square
+COIN_WAVES, NUT_WAVES = 4.0, 8.0  # spreads over the root of the points' number: noise makes 1.4, at times 4
 NAMES = ("nut", "coin")
 SIZES = (0.02, 0.06)  # m, from the middle to the corners
 LARGE_COIN = 0.45  # noise of the first coin
@@ -71,12 +72,26 @@ def off_hexagon(points: Floats) -> float:
 
 
 def clear(points: Floats, spread: float, nut: bool) -> bool:
-    """Tell whether the spread names it, and the better one of both fits as well: by a tenth or more."""
+    """Tell whether the spread names it, six waves around the circle too, and the better fit, by a tenth or more."""
     circle = off_circle(points)
     if nut == (circle <= np.sqrt(EXPLAINED) * spread):
         return False
+    waves = off_in_waves(points) * np.sqrt(len(points)) / spread
+    if waves < NUT_WAVES if nut else waves > COIN_WAVES:
+        return False
     hexagon = off_hexagon(points)
     return circle > PLAINLY * hexagon if nut else hexagon > PLAINLY * circle
+
+
+def off_in_waves(points: Floats) -> float:
+    """Return how high six waves around the best circle are that the points lie on, metres."""
+    circle = pk.fit_circle(points)
+    if circle is None:
+        return INF
+    x, y = (points - circle.center).T
+    turn = 6 * np.arctan2(y, x)
+    waves = np.column_stack([np.cos(turn), np.sin(turn), np.ones_like(turn)])
+    return float(np.hypot(*np.linalg.lstsq(waves, np.hypot(x, y), rcond=None)[0][:2]))
 
 
 def clear_ones(

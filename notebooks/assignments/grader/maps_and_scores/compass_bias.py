@@ -84,21 +84,23 @@ EXACT = pk.Lidar(beams=60, range_max=0.4)
 POOR = pk.Lidar(beams=60, range_max=0.4, noise_std=0.002, dropout=0.2)
 
 
-def some_bias(rng: np.random.Generator) -> float:
-    """Return a bias of 1 to 10 degrees to either side."""
-    return float(rng.choice([-1, 1]) * np.radians(rng.uniform(1, 10)))
+def some_biases(rng: np.random.Generator) -> Iterator[float]:
+    """Yield five biases of 2 to 10 degrees, to either side by turns."""
+    side = rng.choice([-1, 1])
+    for n in range(5):
+        yield float(side * (-1) ** n * np.radians(rng.uniform(2, 10)))
 
 
 def exact_scans(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     """Yield exact scans, headings about the same."""
-    for _ in range(5):
-        yield (biased(rng, some_bias(rng), EXACT, 0.1),)
+    for bias in some_biases(rng):
+        yield (biased(rng, bias, EXACT, 0.1),)
 
 
 def poor_scans(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     """Yield scans with noise and dropouts, and any headings."""
-    for _ in range(5):
-        yield (biased(rng, some_bias(rng), POOR, np.pi),)
+    for bias in some_biases(rng):
+        yield (biased(rng, bias, POOR, np.pi),)
 
 
 def right_compass(rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
