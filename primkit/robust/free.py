@@ -159,7 +159,7 @@ def path_through(points: Floats, spread: float) -> Floats | None:
 
 
 def _shortest_tree(beads: Floats, reach: float) -> csr_array:
-    """Return the shortest tree of links, none longer than ``reach`` metres, that connects all beads as far as it can."""
+    """Return the shortest tree of links between beads, none longer than ``reach`` metres."""
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import minimum_spanning_tree
     from scipy.spatial import cKDTree
