@@ -13,8 +13,8 @@ from primkit.space.explanations import told_by_ends
 from primkit.space.finding import Sight
 from primkit.space.ground import find_ground, groups
 from primkit.space.lidar3d import beams
-from primkit.space.scenes import UP, shifted
-from primkit.space.solids import UNIT, hit
+from primkit.space.scenes import UP
+from primkit.space.solids import UNIT, altered, hit
 
 AROUND = [
     (2.9 * np.cos(a), 2.9 * np.sin(a), z) for a, z in zip(np.arange(6), (0.4, 0.6, 0.8, 1.0, 0.5, 0.9), strict=True)
@@ -209,7 +209,7 @@ def test_the_same_seed_gives_the_same_solids_wherever_the_scene_is():
     moved = space.find_solids(space.Cloud(cloud.origins + by, cloud.elevations, cloud.ranges), rng=3)
     for a, b in zip(first, moved, strict=True):
         assert np.allclose(a.solid.center + by, b.solid.center, atol=1e-4)
-    assert np.allclose(shifted(scene.solids[0], by).center, scene.solids[0].center + by)
+    assert np.allclose(altered(scene.solids[0], center=scene.solids[0].center + by).center, scene.solids[0].center + by)
 
 
 def test_weights_forget_returns_from_nowhere():

@@ -22,7 +22,8 @@ import numpy as np
 from ..arguments import Bools, Floats, Ints
 from .solids import Solid, hit
 
-NOWHERE_SHARE, NOWHERE_DENSITY = 0.05, 0.2  # of a group's returns; and per metre
+NOWHERE_SHARE = 0.05  # of a group's returns
+OF_NOWHERE = NOWHERE_SHARE * 0.2  # per metre: they are spread over 5 m
 ON_IT = 4.0  # standard deviations: a return that is so near to where the solid is met says nothing against it
 STEEPEST = 50.0  # m of range per m across: what grazes more tells nothing that is linear
 ROUNDS, DAMPINGS = 25, 6  # of Gauss and Newton's, and shorter steps in each
@@ -57,26 +58,31 @@ class Beams:
         return self.origins + self.ranges[:, None] * self.directions
 
 
-def log_likelihoods(t: Floats, beams: Beams) -> Floats:
-    """Return what each beam says of a solid that it would meet at range t, shape (..., N), up to a constant."""
-    s, own = beams.noise_std, beams.own
-    peak = 1 / (np.sqrt(2 * np.pi) * s)
-    said = np.where(beams.ranges - ON_IT * s > t, np.log(NOWHERE_SHARE * NOWHERE_DENSITY / peak), 0.0)
-    gap = (beams.ranges[own] - t[..., own]) / s
-    near = (1 - NOWHERE_SHARE) * peak * np.exp(-0.5 * np.minimum(gap * gap, 1e3))
-    said[..., own] = np.log(near + NOWHERE_SHARE * NOWHERE_DENSITY)
-    return said
-
-
 def likelihood(solid: Solid, beams: Beams) -> float:
     """Return the logarithm of how likely a solid makes what all beams returned, up to a constant."""
-    return float(log_likelihoods(hit(solid, beams.origins, beams.directions), beams).sum())
+    s, own, t = beams.noise_std, beams.own, hit(solid, beams.origins, beams.directions)
+    through = np.count_nonzero(~own & (beams.ranges - ON_IT * s > t))
+    return float(returned(beams.ranges[own] - t[own], s).sum() + missed(s) * through)
+
+
+def returned(off: Floats, noise_std: float) -> Floats:
+    """Return the logarithm of how likely a return of the group is off by so much, metres."""
+    return np.asarray(np.log(_of_it(off, noise_std) + OF_NOWHERE))
+
+
+def missed(noise_std: float) -> float:
+    """Return the logarithm of how likely a beam passes through a solid that is there."""
+    return float(np.log(OF_NOWHERE * np.sqrt(2 * np.pi) * noise_std))
 
 
 def belongs(off: Floats, noise_std: float) -> Floats:
     """Return how likely what is off by so much, metres, is not from nowhere."""
-    near = (1 - NOWHERE_SHARE) / (np.sqrt(2 * np.pi) * noise_std) * np.exp(-0.5 * (off / noise_std) ** 2)
-    return near / (near + NOWHERE_SHARE * NOWHERE_DENSITY)
+    near = _of_it(off, noise_std)
+    return near / (near + OF_NOWHERE)
+
+
+def _of_it(off: Floats, noise_std: float) -> Floats:
+    return (1 - NOWHERE_SHARE) / (np.sqrt(2 * np.pi) * noise_std) * np.exp(-0.5 * (off / noise_std) ** 2)
 
 
 def linearised(solid: Solid, beams: Beams) -> tuple[Floats, Floats, Floats]:
@@ -85,7 +91,7 @@ def linearised(solid: Solid, beams: Beams) -> tuple[Floats, Floats, Floats]:
     met = np.flatnonzero(t < np.inf)
     o, d, t = beams.origins[met], beams.directions[met], t[met]
     normals, speeds = solid.speeds(o + t[:, None] * d)
-    slant = (normals * d).sum(axis=1)
+    slant = np.einsum("ij,ij->i", normals, d)
     gap = beams.ranges[met] - t
     weights = belongs(gap, beams.noise_std) * (np.abs(slant) > 1 / STEEPEST)
     return weights, gap, speeds / np.where(slant == 0, np.inf, slant)[:, None]
@@ -147,8 +153,5 @@ def information(solid: Solid, beams: Beams) -> Floats:
 
 def stepped(solid: Solid, step: Floats) -> Solid | None:
     """Return the solid after a step; None when nothing of that size is left."""
-    try:
-        after = solid.moved(step)
-    except ValueError:
-        return None
-    return after if after.half.max() < LARGEST_SOLID else None
+    after = solid.moved(step)
+    return after if after.half.min() > 0 and after.half.max() < LARGEST_SOLID else None

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arguments import Bools, Floats, Ints
-from .along_beam import Beams, log_likelihoods
+from ..arguments import Floats
+from .along_beam import ON_IT, Beams, missed, returned
 from .solids import Plane, Solid, first_of
 
 FAR_OUT, MOST_LESS = 100.0, 0.95  # m: so far out an end is what is nearest; share of a size that may be taken away
@@ -59,40 +59,52 @@ def grown(solid: Solid, ends: dict[int, End] | None = None, known: float = 0.0) 
 
 
 def end_of(solid: Solid, k: int, beams: Beams, ground: Plane | None) -> End:
-    """Return where the end with number k is, all others as they are."""
+    """Return where the end with number k is, all others as they are.
+
+    A solid is what all else leaves of a beam, from ``first`` to ``last``, cut off by the plane of this end. A return of
+    the group tells by its range, step by step; a miss speaks against every growth that would have met it.
+    """
     j = (k - FIRST_END["box"]) % 3 if solid.kind == "box" else 2  # the axis that the end lies across
     normal, slope = outward(solid, k) * solid.frame[j], outward(solid, k) * np.eye(solid.numbers)[k]
     least, most, contact = -2 * solid.half[j] * MOST_LESS, FARTHEST_END, np.inf
     if ground is not None:
         contact = max(to_ground(solid, normal, ground), 0.0)
         most = min(most, contact)
-    # A solid is what all else leaves of a beam, cut off by the plane of this end.
-    enters, leaves = solid.moved(FARTHEST_END * slope).chord(beams.origins, beams.directions)
-    away, start = beams.directions @ normal, (beams.origins - solid.center) @ normal
+    first, last = solid.moved(FARTHEST_END * slope).chord(beams.origins, beams.directions)
+    first = np.maximum(first, 0)
+    last = np.minimum(last, np.where(beams.own, np.inf, beams.ranges - ON_IT * beams.noise_std))
+    met = np.flatnonzero(first < last)
+    first, last, o, d = first[met], last[met], beams.origins[met], beams.directions[met]
+    away, start = d @ normal, (o - solid.center) @ normal - solid.half[j]
+    lowest = np.where(away < 0, last, first)  # the range at which the end, as it grows, comes to cut a beam
+    growth = start + away * lowest  # and how far it has grown then
+    told = np.argsort(growth)
+    told = told[slice(*np.searchsorted(growth[told], (least, most)))]
+    lost = growth[told[~beams.own[met[told]]]]
+    own = np.flatnonzero(beams.own[met] & (growth < most))
 
-    def ranges(growth: Floats, which: Bools | Ints | slice) -> Floats:
-        a, first, last = away[which], enters[which], leaves[which]
+    def ranges(steps: Floats) -> Floats:
+        a, enters, leaves = away[own], first[own], last[own]
         with np.errstate(divide="ignore", invalid="ignore"):
-            cut = (solid.half[j] + growth[:, None] - start[which]) / a
-        return first_of(np.where(a < 0, np.maximum(first, cut), first), np.where(a > 0, np.minimum(last, cut), last))
+            cut = (steps[:, None] - start[own]) / a
+        enters, leaves = (
+            np.where(a < 0, np.maximum(enters, cut), enters),
+            np.where(a > 0, np.minimum(leaves, cut), leaves),
+        )
+        return first_of(enters, leaves)
 
-    wide, narrow = ranges(np.array([most, least]), slice(None))
-    changing = wide != narrow  # growth only brings ranges nearer: these alone tell of this end
-    told = beams[changing]
-    if not changing.any():
-        std = float((most - least) / np.sqrt(12))
-        return End((least + most) / 2, std, (least, most), slope, unbounded=most == FARTHEST_END)
+    def log_likelihoods(steps: Floats) -> Floats:
+        by_returns = returned(beams.ranges[met[own]] - ranges(steps), beams.noise_std).sum(axis=1)
+        return np.asarray(by_returns + missed(beams.noise_std) * np.searchsorted(lost, steps))
 
     look = FINEST_END * (FARTHEST_END / FINEST_END) ** (np.arange(LOOK_STEPS) / (LOOK_STEPS - 1))
     steps = np.unique(np.clip(np.concatenate([-look, [0.0], look]), least, most))
-    value = log_likelihoods(ranges(steps, changing), told).sum(axis=1)
-    which = np.flatnonzero(changing)
     for _ in range(ZOOMS):
+        own = own[np.not_equal(*ranges(steps[[0, -1]]))]  # the others say the same of all these steps
+        value = log_likelihoods(steps)
         likely = np.flatnonzero(value > value.max() - UNLIKELY)
         steps = np.linspace(steps[max(likely[0] - 1, 0)], steps[min(likely[-1] + 1, len(steps) - 1)], FINE_STEPS)
-        nearest, farthest = ranges(steps[[-1, 0]], which)
-        which = which[nearest != farthest]  # the others say the same of all these steps
-        value = log_likelihoods(ranges(steps, which), beams[which]).sum(axis=1)
+    value = log_likelihoods(steps)
     p = np.exp(value - value.max())
     inside = steps[p > np.exp(-UNLIKELY)].tolist()
     if most == contact and inside[-1] == most and ground is not None:
@@ -102,12 +114,11 @@ def end_of(solid: Solid, k: int, beams: Beams, ground: Plane | None) -> End:
     mean = float(p @ steps)
     std = float(np.sqrt(p @ (steps - mean) ** 2 + (steps[1] - steps[0]) ** 2 / 12))
     low, high = np.interp([SHARE_OUTSIDE / 2, 1 - SHARE_OUTSIDE / 2], np.cumsum(p), steps).tolist()
-    # A beam is lost where this end leaves nothing of its way through all else: those next to it tell where.
-    last = np.where(away < 0, leaves, enters)[changing]
-    lost = start[changing] + away[changing] * last - solid.half[j]
-    beside = [np.where(side, np.abs(lost - mean), np.inf).argmin() for side in (lost < mean, lost >= mean)]
-    there = (told.origins + last[:, None] * told.directions)[beside].mean(axis=0)
-    slope = solid.speeds((there + FAR_OUT * normal)[None])[1][0]
+    if len(told):  # the beams next to the end tell of it where they pass
+        next_to_it = np.searchsorted(growth[told], mean)
+        beside = told[max(next_to_it - 1, 0) : next_to_it + 1]
+        there = (o[beside] + lowest[beside, None] * d[beside]).mean(axis=0)
+        slope = solid.speeds((there + FAR_OUT * normal)[None])[1][0]
     return End(mean, std, (low, high), slope, unbounded=most == FARTHEST_END == inside[-1])
 
 

@@ -160,20 +160,21 @@ class Sight:
     def beams(self, number: Ints, members: Ints) -> Beams:
         """Return some beams of the cloud, by number, of which the members are a group's own."""
         pose, beam = np.divmod(number, len(self.directions))
-        ranges, own = self.cloud.ranges.ravel()[number], np.isin(number, members)
-        return Beams(self.cloud.origins[pose], self.directions[beam], ranges, own, self.noise_std)
+        ranges, own = self.cloud.ranges.ravel(), np.zeros(self.cloud.ranges.size, dtype=bool)
+        own[members] = True
+        return Beams(self.cloud.origins[pose], self.directions[beam], ranges[number], own[number], self.noise_std)
 
     def around(self, members: Ints) -> Beams:
         """Return the beams that bear on a group: they reach the ball around it that its solid can fill."""
         points = self.points(members)
         low, high = points.min(axis=0), points.max(axis=0)
         center, reach = (low + high) / 2, float(np.linalg.norm(high - low)) / 2 + FARTHEST_END
-        bearing = [members]
+        bearing = []
         for pose, origin in enumerate(self.cloud.origins):
             near = np.flatnonzero(within(center, reach, origin, self.directions))
             far_enough = self.cloud.ranges[pose].ravel()[near] > np.linalg.norm(center - origin) - reach
             bearing.append(pose * len(self.directions) + near[far_enough])
-        return self.beams(np.unique(np.concatenate(bearing)), members)
+        return self.beams(np.concatenate(bearing), members)
 
     def points(self, members: Ints) -> Floats:
         """Return where a group's beams came back from, shape (N, 3), metres."""

@@ -11,13 +11,12 @@ Out: a ``Scene``: solids that do not touch, over the plane z = 0.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arguments import Floats, Ints, as_count, as_positive, as_rng, check_type, limit
-from .solids import Box, Cylinder, Plane, Solid, Sphere, hit, turn
+from .solids import Box, Cylinder, Plane, Solid, Sphere, altered, hit, turn
 
 UP = np.array([0.0, 0.0, 1.0])
 GROUND, NOTHING = -1, -2  # what a beam meets that meets no solid
@@ -109,14 +108,7 @@ def _random_solid(rng: np.random.Generator, place: Floats) -> Solid:
             frame = turn(np.array([rng.uniform(*TILTS), 0.0, 0.0])) @ frame
         solid = Box(middle, frame, rng.uniform(*SIDES, 3))
     up = (rng.uniform(*LIFTS) if lifted else 0.0) - (solid.center[2] - solid.reach(UP))
-    return shifted(solid, up * UP)
-
-
-def shifted(solid: Solid, by: Floats) -> Solid:
-    """Return the solid shifted by a vector, shape (3,), metres."""
-    moved = copy(solid)
-    vars(moved).update(center=solid.center + by)
-    return moved
+    return altered(solid, center=solid.center + up * UP)
 
 
 def _reach(solid: Solid) -> float:

@@ -21,8 +21,9 @@ are the rows of ``frame``): sphere x, y, z, radius; cylinder across (2), tilt (2
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -33,6 +34,7 @@ SolidKind = Literal["sphere", "cylinder", "box"]
 Chord = tuple[Floats, Floats]  # the ranges at which beams enter and leave, shape (N,) each
 
 UNIT = 1e-6  # directions that are longer or shorter than 1 by more are a mistake
+TINY = np.finfo(float).tiny  # so that nothing is divided by zero
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,10 +87,9 @@ class Sphere:
     def chord(self, origins: ArrayLike, directions: ArrayLike) -> Chord:
         """Return the ranges at which beams enter and leave, metres; NaN where they pass by."""
         o, d = _local(self, origins, directions)
-        along = (o * d).sum(axis=1)
-        off = o - along[:, None] * d
+        along = (o * d).sum(axis=0)
         with np.errstate(invalid="ignore"):
-            half = np.sqrt(self.radius**2 - (off**2).sum(axis=1))
+            half = np.sqrt(self.radius**2 - ((o - along * d) ** 2).sum(axis=0))
         return -along - half, -along + half
 
     def distance(self, points: Floats) -> Floats:
@@ -97,12 +98,13 @@ class Sphere:
 
     def speeds(self, points: Floats) -> tuple[Floats, Floats]:
         """Return the normals, shape (N, 3), and the speeds of the numbers, shape (N, 4)."""
-        normals = _unit(points - self.center)
+        x = points - self.center
+        normals = x / np.maximum(np.linalg.norm(x, axis=1), TINY)[:, None]
         return normals, np.column_stack([normals, np.ones(len(normals))])
 
     def moved(self, step: Floats) -> Sphere:
         """Return the sphere after a step of its numbers, shape (4,)."""
-        return Sphere(self.center + step[:3], self.radius + step[3])
+        return altered(self, center=self.center + step[:3], radius=self.radius + step[3])
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,40 +137,41 @@ class Cylinder:
     def chord(self, origins: ArrayLike, directions: ArrayLike) -> Chord:
         """Return the ranges at which beams enter and leave, metres; a beam that passes by leaves first, or is NaN."""
         o, d = _local(self, origins, directions)
-        across = d[:, 0] ** 2 + d[:, 1] ** 2
+        across = d[0] ** 2 + d[1] ** 2
         with np.errstate(divide="ignore", invalid="ignore"):
-            along = -(o[:, 0] * d[:, 0] + o[:, 1] * d[:, 1]) / across
-            lever = o[:, 0] * d[:, 1] - o[:, 1] * d[:, 0]
-            half = np.sqrt(self.radius**2 - lever**2 / across) / np.sqrt(across)
-        straight = (across == 0) & (o[:, 0] ** 2 + o[:, 1] ** 2 <= self.radius**2)  # along the axis, within
+            along = -(o[0] * d[0] + o[1] * d[1]) / across
+            half = np.sqrt(self.radius**2 - (o[0] * d[1] - o[1] * d[0]) ** 2 / across) / np.sqrt(across)
+        straight = (across == 0) & (o[0] ** 2 + o[1] ** 2 <= self.radius**2)  # along the axis, within
         enters, leaves = np.where(straight, -np.inf, along - half), np.where(straight, np.inf, along + half)
-        low, high = between(o[:, 2], d[:, 2], -self.height / 2, self.height / 2)
+        low, high = between(o[2], d[2], -self.height / 2, self.height / 2)
         return np.maximum(enters, low), np.minimum(leaves, high)
 
     def distance(self, points: Floats) -> Floats:
         """Return how far points lie outside the part that they are most outside of, shape (N,), metres."""
-        return self._outside((points - self.center) @ self.frame.T).max(axis=0)
+        return self._outside(self.frame @ (points - self.center).T).max(axis=0)
 
     def _outside(self, x: Floats) -> Floats:
-        """Return how far points in its frame lie outside its side, its low and its high end, shape (3, N)."""
-        return np.array(
-            [np.hypot(x[:, 0], x[:, 1]) - self.radius, -x[:, 2] - self.height / 2, x[:, 2] - self.height / 2]
-        )
+        """Return how far points in its frame, shape (3, N), lie outside its side, its low and its high end."""
+        return np.array([np.hypot(x[0], x[1]) - self.radius, -x[2] - self.height / 2, x[2] - self.height / 2])
 
     def speeds(self, points: Floats) -> tuple[Floats, Floats]:
         """Return the normals, shape (N, 3), and the speeds of the numbers, shape (N, 7)."""
-        x = (points - self.center) @ self.frame.T
+        x = self.frame @ (points - self.center).T
         side, low, high = np.arange(3)[:, None] == self._outside(x).argmax(axis=0)
-        n = _unit(x * [1, 1, 0]) * side[:, None]
-        n[:, 2] = high * 1.0 - low
-        tilts = n[:, :2] * x[:, 2:] - n[:, 2:] * x[:, :2]
-        return n @ self.frame, np.column_stack([n[:, :2], tilts, side, -1.0 * low, high])
+        n = np.array([*x[:2] * (side / np.maximum(np.hypot(x[0], x[1]), TINY)), high * 1.0 - low])
+        tilts = n[:2] * x[2] - n[2] * x[:2]
+        return n.T @ self.frame, np.vstack([n[:2], tilts, side, -1.0 * low, high]).T
 
     def moved(self, step: Floats) -> Cylinder:
         """Return the cylinder after a step of its numbers, shape (7,)."""
         u, v, w = self.frame
         center = self.center + step[0] * u + step[1] * v + (step[5] + step[6]) / 2 * w
-        return Cylinder(center, w + step[2] * u + step[3] * v, self.radius + step[4], self.height + step[6] - step[5])
+        axis = w + step[2] * u + step[3] * v
+        axis /= np.sqrt(axis @ axis)
+        height = self.height + step[6] - step[5]
+        return altered(
+            self, center=center, axis=axis, frame=frame_of(axis), radius=self.radius + step[4], height=height
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,28 +200,36 @@ class Box:
     def chord(self, origins: ArrayLike, directions: ArrayLike) -> Chord:
         """Return the ranges at which beams enter and leave, metres; a beam that passes by leaves first."""
         o, d = _local(self, origins, directions)
-        low, high = between(o, d, -self.half, self.half)
-        return low.max(axis=1), high.min(axis=1)
+        low, high = between(o, d, -self.half[:, None], self.half[:, None])
+        return low.max(axis=0), high.min(axis=0)
 
     def distance(self, points: Floats) -> Floats:
         """Return how far points lie outside the face that they are most outside of, shape (N,), metres."""
-        return (np.abs((points - self.center) @ self.frame.T) - self.half).max(axis=1)
+        return (np.abs(self.frame @ (points - self.center).T) - self.half[:, None]).max(axis=0)
 
     def speeds(self, points: Floats) -> tuple[Floats, Floats]:
         """Return the normals, shape (N, 3), and the speeds of the numbers, shape (N, 9)."""
-        x = (points - self.center) @ self.frame.T
-        axis = (np.abs(x) - self.half).argmax(axis=1)
-        n = np.eye(3)[axis] * np.sign(x[np.arange(len(x)), axis])[:, None]
-        return n @ self.frame, np.hstack([np.cross(x, n), np.minimum(n, 0), np.maximum(n, 0)])
+        x = self.frame @ (points - self.center).T
+        n = np.sign(x) * (np.arange(3)[:, None] == (np.abs(x) - self.half[:, None]).argmax(axis=0))
+        turns = x[[1, 2, 0]] * n[[2, 0, 1]] - x[[2, 0, 1]] * n[[1, 2, 0]]
+        return n.T @ self.frame, np.vstack([turns, np.minimum(n, 0), np.maximum(n, 0)]).T
 
     def moved(self, step: Floats) -> Box:
         """Return the box after a step of its numbers, shape (9,)."""
         low, high = step[3:6], step[6:9]
-        turned = turn(step[:3]) @ self.frame
-        return Box(self.center + (low + high) / 2 @ self.frame, turned, self.size + high - low)
+        center = self.center + (low + high) / 2 @ self.frame
+        return altered(self, center=center, frame=turn(step[:3]) @ self.frame, size=self.size + high - low)
 
 
 Solid = Sphere | Cylinder | Box
+S = TypeVar("S", bound=Solid)
+
+
+def altered(solid: S, **numbers: Floats | float) -> S:
+    """Return the solid with other numbers. They are not checked: who takes a step sees how far it leads."""
+    other = copy(solid)
+    vars(other).update(numbers)
+    return other
 
 
 def hit(solid: Solid, origins: ArrayLike, directions: ArrayLike) -> Floats:
@@ -239,11 +250,8 @@ def between(o: Floats, d: Floats, low: Floats | float, high: Floats | float) -> 
     """Return when o + t d comes to lie between two bounds, and when it ceases to."""
     with np.errstate(divide="ignore", invalid="ignore"):
         to_low, to_high = (low - o) / d, (high - o) / d
-    always = (d == 0) & (low <= o) & (o <= high)  # also in a bound itself, where 0 / 0 tells nothing
-    return (
-        np.where(always, -np.inf, np.minimum(to_low, to_high)),
-        np.where(always, np.inf, np.maximum(to_low, to_high)),
-    )
+    # Along a bound itself, 0 / 0 is NaN, and stands for always.
+    return np.fmax(np.minimum(to_low, to_high), -np.inf), np.fmin(np.maximum(to_low, to_high), np.inf)
 
 
 def frame_of(axis: Floats) -> Floats:
@@ -262,7 +270,7 @@ def frame_of(axis: Floats) -> Floats:
 def turn(by: Floats) -> Floats:
     """Return what turns the rows of a frame by a small vector in that frame, shape (3,), radians (Rodrigues)."""
     angle = float(np.linalg.norm(by))
-    x, y, z = by / max(angle, np.finfo(float).tiny)
+    x, y, z = by / max(angle, TINY)
     k = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     return (np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * k @ k).T
 
@@ -292,12 +300,6 @@ def _as_frame(frame: ArrayLike) -> Floats:
 
 
 def _local(solid: Solid, origins: ArrayLike, directions: ArrayLike) -> tuple[Floats, Floats]:
-    """Return beams in the solid's own frame, each shape (N, 3)."""
-    d = np.asarray(directions, dtype=float)
-    o = np.asarray(origins, dtype=float) - solid.center
-    d, o = (d, o) if solid.kind == "sphere" else (d @ solid.frame.T, o @ solid.frame.T)
-    return np.broadcast_to(o, d.shape), d
-
-
-def _unit(vectors: Floats) -> Floats:
-    return vectors / np.maximum(np.sqrt((vectors**2).sum(axis=1)), np.finfo(float).tiny)[:, None]
+    """Return beams in the solid's own frame, an axis a row: shape (3, N), or (3, 1) of a single origin, and (3, N)."""
+    o = np.atleast_2d(np.asarray(origins, dtype=float) - solid.center)
+    return solid.frame @ o.T, solid.frame @ np.asarray(directions, dtype=float).T

@@ -28,6 +28,7 @@ REACHES = (0.06, 0.025, 0.01)  # m, and not below twice the noise: what is near,
 TRIALS, AXES, TURNS_TRIED = 60, 80, 20  # samples; directions all round; steps of a quarter turn
 PLANES, LEAST_BESIDE, WIDEST = 2, 10, 5.0  # looked for; points beside one that may be an end; m, of a radius
 BEST_AXES, BEST_TURNS = 3, 2  # that are drawn to the points
+QUARTER_TURNS = np.array([turn(np.array([0, 0, a])) for a in np.arange(TURNS_TRIED) * np.pi / 2 / TURNS_TRIED])
 OUTERMOST = 2.0  # percent of the points at each end that a first size does not count
 
 
@@ -116,8 +117,7 @@ def _cylinder(points: Floats, planes: list[tuple[Floats, Floats]], noise_std: fl
 def _box(points: Floats, planes: list[tuple[Floats, Floats]], noise_std: float) -> Solid:
     """Return the box that points lie nearest to, of those that turn about the normals of planes."""
     normals = [n for n, _ in planes]
-    quarter = np.linspace(0, np.pi / 2, TURNS_TRIED, endpoint=False)
-    frames = np.array([turn(np.array([0, 0, a])) @ frame_of(n) for n in normals for a in quarter])
+    frames = np.concatenate([QUARTER_TURNS @ frame_of(n) for n in normals])
     x = points @ np.swapaxes(frames, 1, 2)
     low, high = np.percentile(x, [OUTERMOST, 100 - OUTERMOST], axis=1)
     off = np.abs(np.maximum(low[:, None] - x, x - high[:, None]).max(axis=2))
