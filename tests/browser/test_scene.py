@@ -414,6 +414,7 @@ def test_buttons_drive_with_the_mouse(seat):
     assert (seat.pose - before)[0] > 0.02
     seat.button("left").click()
     seat.after(scans + 1)
+    seat.stands()  # on a busy machine the last scan of the drive before may have come after the click
     assert seat.pose[2] > 0
 
 
