@@ -20,13 +20,18 @@ from tempfile import TemporaryDirectory
 import links
 import lite
 import reference
-from lessons import page_of
+from lessons import SLIDER, page_of
 
+import primkit as pk
 from primkit.course.leaks import find_leaks, secrets_of
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 MOST_BYTES = 1_000_000  # of a lesson's page
+ON_FRONT = ("The course", "Does it hold?")  # of README.md; the rest is the page "Start"
+MOVED = {".site/": "", "notebooks/teacher/": "teacher/", ".github/CHANGELOG": "changelog"}  # the links of README.md
+WORDS = "**[Start here](start.md)**, [try it live](live.md), or read: the sliders and quizzes of these pages work."
+TABLE = re.compile(r"(?:^\|.*\n)+", re.MULTILINE)
 LINK = re.compile(r"(?<!!)\[([^\]]+)\]\((?!https?:)([^)#\s]*)(#[^)]*)?\)")
 # Of the teacher's pack: what needs no solution to be read. The pages of the problem sets stay with their solutions.
 PACK = ("README.md", "class.md", "running.md", "untrusted_code.md", "accessibility.md", "lessons/*.md")
@@ -69,28 +74,32 @@ def stage(folder):
 
 
 def lessons_into(folder):
-    """Write the lessons' pages, and their list; return their titles by name."""
+    """Write the lessons' pages, and their list; return the door to each: its slider's picture, and its title."""
     folder.mkdir()
     titles = {}
     for path in sorted((ROOT / "notebooks").glob("[0-9]*.ipynb")):
         lesson = json.loads(path.read_text(encoding="utf-8"))
-        title = "".join(lesson["cells"][0]["source"]).partition("\n")[0].removeprefix("# ")
-        titles[path.stem] = f"{path.stem[:2]} {title}"
+        sources = ["".join(cell["source"]) for cell in lesson["cells"]]
+        titles[path.stem] = f"{path.stem[:2]} {sources[0].partition(chr(10))[0].removeprefix('# ')}"
+        slider = getattr(pk.widgets, SLIDER.search("\n".join(sources))[1])()
+        (folder / f"{path.stem}.svg").write_text(slider.draw(), encoding="utf-8")
         (folder / path.name).write_text(json.dumps(page_of(lesson)), encoding="utf-8")
-    listed = "\n".join(f"* [{title}]({name}.ipynb)" for name, title in titles.items())
     below = [f"{title} <{name}>" for name, title in titles.items()]
-    (folder / "index.md").write_text(f"# Lessons\n\n{listed}\n\n{tree(below)}", encoding="utf-8")
-    return titles
+    doors = "\n".join(f"* [![](lessons/{name}.svg) {title}](lessons/{name}.ipynb)" for name, title in titles.items())
+    (folder / "index.md").write_text(f"# Lessons\n\n{doors.replace('lessons/', '')}\n\n{tree(below)}", encoding="utf-8")
+    return doors
 
 
-def front(readme, titles):
-    """Return the front page and the page behind it, from README.md."""
-    intro, _, rest = re.sub(r"<!--.*?-->\n*", "", readme, flags=re.DOTALL).partition("\n## Start\n")
-    doors = "\n".join(f"* [{title}](lessons/{name}.ipynb)" for name, title in titles.items())
+def front(readme, doors):
+    """Yield the front page and the page behind it, from README.md: the course's table becomes doors with pictures."""
+    for there, here in MOVED.items():
+        readme = readme.replace(f"]({there}", f"]({here}")
+    intro, *sections = re.sub(r"<!--.*?-->\n*", "", readme, flags=re.DOTALL).split("\n## ")
+    first = [section for section in sections if section.startswith(ON_FRONT)]
+    shown = "\n## ".join([f"{intro}\n{WORDS}\n", *first])
     chapters = "start", "lessons/index", "live", "Results <results>", "api/index", "Teachers <teacher/README>"
-    words = "**[Start here](start.md)**, [try it live](live.md), or read: the sliders and quizzes of these pages work."
-    yield "index.md", f"{intro}\n\n{words}\n\n## The lessons\n\n{doors}\n\n{tree((*chapters, 'Changes <changelog>'))}"
-    yield "start.md", f"# Start\n{rest}"
+    yield "index.md", TABLE.sub(lambda _: doors + "\n", shown, count=1) + tree((*chapters, "Changes <changelog>"))
+    yield "start.md", "# " + "\n## ".join(section for section in sections if section not in first)
 
 
 def live(text):

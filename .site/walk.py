@@ -4,8 +4,8 @@
 
 In:  a folder of pages, and Chromium or Chrome.
 Out: a sentence for each fault: a request that leaves the folder, an error of a script, a page that is wider than its
-     window, a slider that does not move, a control without a name, a picture without words, a formula that stands there
-     as typed, a search without results.
+     window, a slider that does not move, a control without a name, a picture without words, a formula or an example
+     that stands there as typed, what the Tab key does not reach, show or leave, a search without results.
 """
 
 import shutil
@@ -18,16 +18,34 @@ HERE = Path(__file__).resolve().parent
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 WINDOWS = {"telephone": 390, "desk": 1440}  # px
 SECONDS = 2  # of processor time, from opening a lesson to the first slider that has moved
-NAMELESS = """() => [...document.querySelectorAll("main :is(img, button, input, summary, a[href])")].filter((one) => {
+NAMELESS = """() => [
+  ...document.querySelectorAll("main :is(img:not(a img), button, input, summary, a[href])"),
+].filter((one) => {
   const words = one.getAttribute("alt") ?? one.getAttribute("aria-label") ?? one.title;
   const label = one.labels?.[0]?.textContent ?? "";
   return !(words || label.trim() || one.textContent.trim() || one.querySelector?.("img[alt], svg")
     || one.closest("[aria-hidden=true]"));
 }).map((one) => one.outerHTML.slice(0, 80))"""
 
-TYPED = (
-    r"""() => document.querySelector("main").innerText.match(/\$\$.*|\\(?:frac|sum|sqrt|theta|sigma|le)\b.*/g) ?? []"""
-)
+TYPED = r"""() => [...document.querySelectorAll("main :is(p, li, dt, td)")].map((one) => one.innerText)
+  .filter((text) => /\$\$|\\(?:frac|sum|sqrt|theta|sigma|le)\b|^>>> /.test(text))"""
+
+# What has the focus: what it is, and what is wrong with how it shows.
+FOCUSED = """() => {
+  document.getAnimations().filter((one) => one instanceof CSSTransition).forEach((one) => one.finish());
+  const one = document.activeElement, { top, bottom, height } = one.getBoundingClientRect();
+  if (one === document.body) return null;
+  const { outlineStyle, boxShadow } = getComputedStyle(one);
+  one.dataset.reached = "";
+  const wrong = !height || bottom <= 0 || top >= innerHeight ? "out of sight"
+    : outlineStyle === "none" && boxShadow === "none" ? "looks as without the focus" : "";
+  return [one.outerHTML.slice(0, 80), wrong];
+}"""
+UNREACHED = """() => [...document.querySelectorAll("main :is(a[href], button, input, summary, [tabindex='0'])")]
+  .filter((one) => one.checkVisibility({ visibilityProperty: true }))
+  .filter((one) => !("reached" in one.dataset) && one.type !== "radio")
+  .map((one) => one.outerHTML.slice(0, 80))"""
+MOST_STOPS = 1000  # of the Tab key on a page
 
 
 def main():
@@ -44,7 +62,7 @@ def main():
             context = browser.new_context(viewport={"width": width, "height": 900}, offline=True)
             for path in pages:
                 name, page = f"{path.relative_to(folder)} ({window})", context.new_page()
-                for told in look_at(page, path, width):
+                for told in (*look_at(page, path, width), *(by_keys(page) if window == "desk" else ())):
                     if isinstance(told, float):
                         slowest = max(slowest, told)
                     else:
@@ -90,6 +108,19 @@ def moved_after(page, path):
     page.wait_for_function(f"before => document.querySelector('{picture}').innerHTML !== before", arg=before)
     ended = processor_time(clock)
     return ended - begun if ended > begun else ended  # the page may have got a process of its own
+
+
+def by_keys(page):
+    """Yield what is wrong on the way through a page by the Tab key alone, from its top to its end."""
+    page.goto(page.url)
+    for _ in range(MOST_STOPS):
+        page.keyboard.press("Tab")
+        if not (told := page.evaluate(FOCUSED)):
+            yield from (f"no key reaches {one}" for one in page.evaluate(UNREACHED))
+            return
+        if told[1]:
+            yield f"under Tab {told[0]} {told[1]}"
+    yield f"{MOST_STOPS} times Tab do not lead out"
 
 
 def processor_time(clock):

@@ -56,6 +56,8 @@ class Camera:
     noise_std : float
         Of each pixel's red, green and blue, as a share of full brightness.
 
+    Examples
+    --------
     >>> camera = Camera()
     >>> np.degrees([camera.field_of_view / camera.width, *camera.edges[[0, -1]]]).round(2).tolist()
     [1.08, 28.0, -28.0]
@@ -63,7 +65,7 @@ class Camera:
 
     width: int = 52
     height: int = 39
-    field_of_view: float = np.radians(56)
+    field_of_view: float = float(np.radians(56))
     turned: float = 0.0
     light: float = 0.0
     noise_std: float = 0.0
