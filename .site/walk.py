@@ -35,15 +35,15 @@ FOCUSED = """() => {
   document.getAnimations().filter((one) => one instanceof CSSTransition).forEach((one) => one.finish());
   const one = document.activeElement, { top, bottom, height } = one.getBoundingClientRect();
   if (one === document.body) return null;
-  const { outlineStyle, boxShadow } = getComputedStyle(one);
   one.dataset.reached = "";
-  const wrong = !height || bottom <= 0 || top >= innerHeight ? "out of sight"
-    : outlineStyle === "none" && boxShadow === "none" ? "looks as without the focus" : "";
-  return [one.outerHTML.slice(0, 80), wrong];
+  const ringed = [one, one.form].filter(Boolean).map((each) => getComputedStyle(each))
+    .some(({ outlineStyle, boxShadow }) => outlineStyle !== "none" || boxShadow !== "none");
+  const hidden = !height || bottom <= 0 || top >= innerHeight;
+  return [one.outerHTML.slice(0, 80), hidden ? "out of sight" : ringed ? "" : "looks as without the focus"];
 }"""
 UNREACHED = """() => [...document.querySelectorAll("main :is(a[href], button, input, summary, [tabindex='0'])")]
-  .filter((one) => one.checkVisibility({ visibilityProperty: true }))
   .filter((one) => !("reached" in one.dataset) && one.type !== "radio")
+  .filter((one) => one.checkVisibility({ visibilityProperty: true }))
   .map((one) => one.outerHTML.slice(0, 80))"""
 MOST_STOPS = 1000  # of the Tab key on a page
 
