@@ -34,8 +34,8 @@ class Narrow:
 
     @staticmethod
     def _checked(function, *args, **more):
-        counts = np.asarray(args[0] if function is np.bincount else args[1])
-        if counts.ndim and counts.dtype.itemsize > 4:
+        counts = args[0] if function is np.bincount else args[1]
+        if isinstance(counts, np.ndarray) and counts.dtype.itemsize > 4:  # there, a list becomes one of 32 bits
             raise TypeError(f"Cannot cast array data from dtype('{counts.dtype}') to dtype('int32')")
         return function(*args, **more)
 
@@ -102,6 +102,24 @@ def test_many_shapes_and_a_moving_grid_on_32_bits(request):
     assert len(grid) > 0
     assert pk.segment(seen.points(), method="link").max() > 3
     assert pk.segment(seen.points()[:200], 3, rng=0).max() == 2
+
+
+def test_the_wings_on_32_bits(request):
+    sides = np.array([(0, -0.05), (0.12, -0.05), (0.12, 0.05), (0, 0.05)])
+    world, turns = pk.World([pk.Polygon(sides), pk.Polygon(sides - (0.12, 0))]), np.arange(12) * np.pi / 6
+    poses = np.column_stack([0.33 * np.cos(turns), 0.33 * np.sin(turns), turns + np.pi])
+    places = [(-2.5, -2.5, 0.6), (2.5, 2.5, 0.6)]
+
+    def found():
+        scans = pk.scan(world, poses, pk.Lidar(beams=180, range_max=0.5, noise_std=0.0003), rng=0)
+        colors = pk.colors_of(scans, pk.look(world, poses, colors=[(0.9, 0.35, 0.1), (0.1, 0.35, 0.9)]))
+        cloud = pk.space.scan(pk.space.random_scene(2, rng=3), places, rng=0)
+        return [*map(str, pk.space.find_solids(cloud, rng=0)), str(pk.take_apart(scans.points(), colors=colors))]
+
+    wide = found()
+    request.getfixturevalue("narrow")
+    assert found() == wide
+    assert len(wide) == 3
 
 
 @pytest.mark.usefixtures("narrow")

@@ -301,5 +301,5 @@ def _cut_at_colors(pieces: list[Piece], points: Floats, colors: Ints) -> list[Pi
 
 def _most_common(rows: Ints) -> Ints:
     """Return the most common number of each row, shape (R, K) -> (R,)."""
-    rows = np.atleast_2d(rows.T).T
+    rows = np.atleast_2d(rows.T).T.astype(np.intp, copy=False)
     return np.array([np.bincount(row).argmax() for row in rows])

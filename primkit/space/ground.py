@@ -116,6 +116,7 @@ def linked(points: Floats, apart: float) -> Ints:
     ijk = np.floor((points - points.min(axis=0)) / LINK_CELL).astype(np.int64)
     _, columns, heights = ijk.max(axis=0) + 1
     cells, cell = np.unique((ijk[:, 0] * columns + ijk[:, 1]) * heights + ijk[:, 2], return_inverse=True)
+    cell = cell.astype(np.intp, copy=False)  # on 32 bits, no count has 64
     n = np.bincount(cell)
     middle = np.column_stack([np.bincount(cell, x) for x in points.T]) / n[:, None]
     pairs = cKDTree(middle).query_pairs(apart, output_type="ndarray").T
