@@ -61,7 +61,7 @@ KMEANS = {
 @pytest.mark.parametrize(("points", "k", "labels"), KMEANS.values(), ids=KMEANS)
 def test_kmeans(points, k, labels):
     got = kmeans(points, k, rng=0)
-    assert got.dtype == np.int64
+    assert got.dtype == np.intp
     assert got.tolist() == labels
 
 
@@ -266,7 +266,7 @@ LINKED = {
 @pytest.mark.parametrize(("points", "labels"), LINKED.values(), ids=LINKED)
 def test_link(points, labels):
     got = link(points)
-    assert got.dtype == np.int64
+    assert got.dtype == np.intp
     assert got.tolist() == labels
 
 
@@ -409,7 +409,7 @@ def test_turning_and_shifting_leaves_the_groups(angle, shift):
 def test_no_points_have_no_labels(method, n_shapes):
     labels = segment([], n_shapes, method=method, rng=0)
     assert labels.shape == (0,)
-    assert labels.dtype == np.int64
+    assert labels.dtype == np.intp
 
 
 def test_segment_is_kmeans_when_told_the_number():
