@@ -127,7 +127,7 @@ def pack(folder):
     names = [file.relative_to(folder).with_suffix("").as_posix() for file in files]
     for file, name in zip(files, names, strict=True):
         up = "../" * (name.count("/") + 1)
-        text = file.read_text(encoding="utf-8").replace(f"]({up}0", f"]({up}lessons/0")
+        text = re.sub(rf"\]\({up}(?=\d)", f"]({up}lessons/", file.read_text(encoding="utf-8"))
         yield f"teacher/{name}.md", text + f"\n{tree(names[1:])}" * (name == "README")
 
 

@@ -115,6 +115,17 @@ def test_every_public_name_has_its_place_in_the_reference():
     assert [f"{wing}.{name}" for wing, name, value in public if id(value) not in values] == []
 
 
+def test_the_teacher_s_pages_lead_to_every_lesson():
+    """A link to what is not on the site loses its address without a word: these must not."""
+    import build  # here: once a site was built, ruff takes this name for the folder's
+
+    pages = "\n".join(text for _, text in build.pack(ROOT / "notebooks" / "teacher"))
+    named = {(where, name) for where, name in re.findall(r"\]\((\S*?)(\d\d_\w+)\.ipynb\)", pages)}
+    lessons = {path.stem for path in LESSONS}
+    assert {name for _, name in named} >= lessons
+    assert {where for where, name in named if name in lessons} == {"../lessons/", "../../lessons/"}
+
+
 def test_links_that_lead_nowhere_are_found(tmp_path):
     (tmp_path / "a.html").write_text(
         '<a href="b.html#there">x</a><a href="https://x.org">y</a><img src="data:image/png;,">'
