@@ -107,14 +107,27 @@ def test_a_wheel_has_the_table_of_contents_and_the_scene_s_front_end() -> None:
     assert [(name, rule) for name in read for rule in rules if PurePosixPath(name).match(rule)] == []
 
 
-@pytest.fixture(scope="module")
-def readme_block() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("readme_block", ROOT / ".ci" / "readme_block.py")
+def script(name: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, ROOT / ".ci" / f"{name}.py")
     assert spec
     assert spec.loader
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+@pytest.fixture(scope="module")
+def readme_block() -> ModuleType:
+    return script("readme_block")
+
+
+def test_the_package_s_page_promises_nothing_that_lies_in_the_folder_alone() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    told = script("package_page").page(readme, "me/kit", "1.0")
+    assert re.findall(r"\]\((?!https://)[^)]*\)", told) == []
+    only_here = r"python -m (?!pip\b)[\w.]+|\.venv|environment\.txt|notebooks/\w+\.ipynb|<!-- (?:folder|package)"
+    assert re.findall(only_here, told) == []
+    assert len(re.findall(only_here, readme)) > 9
 
 
 @pytest.mark.parametrize("name", ["tests", "tests on Windows"])
