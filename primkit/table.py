@@ -85,7 +85,7 @@ class Table:
         return "\n".join("  ".join(map(str.ljust, texts, widths)).rstrip() for texts in lines)
 
     def _repr_html_(self) -> str:
-        head = "".join(_cell("th", text, "bold", scope="col") for text in self.header)
+        head = "".join(_cell("th", text, "bold", scope="col") if text else "<td></td>" for text in self.header)
         body = ""
         for first, *rest in self.rows:
             if rest:

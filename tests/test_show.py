@@ -3,6 +3,7 @@
 import copy
 import inspect
 import pickle
+import re
 import subprocess
 import sys
 from xml.etree import ElementTree
@@ -13,6 +14,7 @@ import pytest
 import primkit as pk
 from primkit.found import MOST_ROWS, Found
 from primkit.show import census, in_mm, thumbnail
+from primkit.table import Table
 from tests.helpers import svg_in, words_in
 
 WORLD = pk.World([pk.Circle((0.1, 0.1), 0.05), pk.Polygon([(-0.3, -0.2), (-0.1, -0.2), (-0.1, -0.1), (-0.3, -0.1)])])
@@ -129,6 +131,11 @@ def test_a_thumbnail_escapes_its_text():
     assert "<script>" not in html
     assert ElementTree.fromstring(html).findtext("p") == "<script>&"
     assert words_in(html) == ["<script>&"]
+
+
+def test_a_column_without_a_name_has_no_header_that_is_read_aloud():
+    head = re.search("<thead>.*</thead>", Table(("", "a"), [("b", "1")])._repr_html_())[0]
+    assert re.findall(r"<(\w+)[^>]*>([^<]*)</\1>", head) == [("td", ""), ("th", "a")]
 
 
 def test_a_thumbnail_is_upright_and_holds_all():
