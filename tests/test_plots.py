@@ -17,6 +17,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.image import imread
+from matplotlib.patches import Rectangle
 
 from primkit.driving import explore
 from primkit.evaluation import evaluate
@@ -640,8 +641,24 @@ def test_story_has_all_steps_and_leaves_no_figure_open():
     titles = sorted(title(ax) for ax in figure.axes)
     assert titles[:3] == ["a) One scan", f"b) {len(steps(FOUR_KINDS)[2])} points", "c) 4 clusters"]
     assert titles[3].startswith("d) 4 shapes found, all within 0.")
+    assert titles[4].startswith("e) Farthest off: 0.")
     assert figure.get_supxlabel().replace("\n", " ") == steps(FOUR_KINDS)[5].scores()
     assert plt.get_fignums() == []
+
+
+def test_the_loupe_is_on_the_place_that_is_farthest_off():
+    """Two discs, one of which was found 3 mm too far to the right: there the loupe looks, and the board says where."""
+    true = World([Circle((-0.2, 0), 0.1), Circle((0.2, 0), 0.05)])
+    found = [Circle((-0.2, 0.001), 0.1), Circle((0.203, 0), 0.05)]
+    points = np.array([(0.25, 0.0), (0.153, 0.0), (-0.3, 0.0)])
+    figure = plot_story(true, scan(true, []), points, [0, 0, 1], found, evaluate(found, true))
+    loupe = next(ax for ax in figure.axes if title(ax) == "e) Farthest off: 3.0 mm")
+    (left, right), (low, high) = loupe.get_xlim(), loupe.get_ylim()
+    assert min(abs((left + right) / 2 - 0.2 - side) for side in (-0.05, 0.05)) < 1e-9
+    assert right - left == pytest.approx(high - low) == pytest.approx(0.02)
+    assert sum(isinstance(one, Rectangle) for one in loupe.patches) == 1  # the cell that is near
+    board = next(ax for ax in figure.axes if title(ax).startswith("d)"))
+    assert [one.get_xy() for one in board.patches if isinstance(one, Rectangle)][-1] == (left, low)
 
 
 def test_story_of_nothing():

@@ -7,28 +7,34 @@ Out: a matplotlib ``Figure`` that leaves nothing behind; a PNG file.
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 
 import matplotlib.style
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 from numpy.typing import ArrayLike
 
-from ..arguments import as_points, check_type
+from ..arguments import Floats, as_points, check_type
 from ..formats import StrPath, write_atomically
+from ..found import resolution_of
 from ..lidar import Scans
 from ..measure import Detection
-from ..report import Report
+from ..palette import GREY, INK, KIND_COLORS, PALE
+from ..report import Match, Report
 from ..shapes import Shape
+from ..show import digits_of_mm
 from ..table import count
 from ..world import World
 from .findings import plot_found
-from .look import set_title
+from .look import outlines, patch, set_title
 from .pictures import plot_clusters, plot_points, plot_scan, plot_world
 
 PICTURE_DPI = 200
+LOUPE_CELLS = 20  # the loupe shows so many in a row
 LAYOUT_ROUNDS = 2  # the layout comes nearer to its goal each time: after these, to a pixel or two
 
 
@@ -47,7 +53,9 @@ def plain() -> AbstractContextManager[None]:
 def plot_story(
     world: World, scans: Scans, points: ArrayLike, labels: ArrayLike, found: Iterable[Detection | Shape], report: Report
 ) -> Figure:
-    """Return one figure with the whole story: a scan, the points, the clusters, and the shapes with their errors.
+    """Return one figure with the whole story: a scan, the points, the clusters, the shapes, and a loupe.
+
+    The loupe shows the place at which a found outline is farthest from the true one, so large that cells are seen.
 
     It is made without pyplot: nothing stays open, no display is needed. A notebook shows it when it is a cell's last
     value; ``save_figure`` writes it to a file. Raises ValueError if points, labels or report do not fit.
@@ -71,14 +79,14 @@ def plot_story(
     >>> empty = World()
     >>> figure = plot_story(empty, scan(empty, []), [], [], [], evaluate([], empty))
     >>> sorted(ax.get_title(loc="left") for ax in figure.axes)
-    ['a) No scans', 'b) No points', 'c) No clusters', 'd) No shapes found']
+    ['a) No scans', 'b) No points', 'c) No clusters', 'd) No shapes found', 'e) Nothing to compare']
     """
     points = as_points(points)
     check_type(scans, Scans, "scans must be of type Scans")
     check_type(report, Report, "report must be of type Report")
     with plain():
-        figure = ShownFigure(figsize=(6.4, 5.0), layout="constrained")
-        axes = figure.subplot_mosaic("ad;bd;cd", width_ratios=[1, 2.8])
+        figure = ShownFigure(figsize=(6.4, 6.4), layout="constrained")
+        axes = figure.subplot_mosaic("abc;dde", height_ratios=[1, 2])
         if len(scans):
             plot_scan(world, scans, int(scans.hits.sum(axis=1).argmax()), axes["a"])
         else:
@@ -91,8 +99,32 @@ def plot_story(
         figure.supxlabel(report.scores().replace(" = ", "\n= "), size=8)
         plot_found(found, world, axes["d"], report)
         set_title(axes["d"], f"d) {axes['d'].get_title(loc='left')}")
+        _draw_loupe(axes["e"], axes["d"], points, report.matches, resolution_of(found))
         freeze(figure)
     return figure
+
+
+def _draw_loupe(ax: Axes, board: Axes, points: Floats, matches: Sequence[Match], cell: float) -> None:
+    """Draw the place at which a found outline is farthest from the true one, and mark it on the board."""
+    _as_step(ax, "e) Nothing to compare")
+    ax.set(aspect="equal", anchor="N")
+    rings = [outlines([match.true]) for match in matches]
+    apart = [np.abs(match.found.signed_distance(ring)) for match, ring in zip(matches, rings, strict=True)]
+    if not apart:
+        return
+    worst = np.concatenate(apart).argmax()
+    off, place = np.concatenate(apart)[worst], np.vstack(rings)[worst]
+    half = max(LOUPE_CELLS / 2 * cell, 2 * off)
+    corner, side = place - half, 2 * half
+    for near in points[np.abs(points - place).max(axis=1) < half + cell]:
+        ax.add_patch(Rectangle(near - cell / 2, cell, cell, facecolor=PALE, edgecolor="white", linewidth=0.5))
+    for match in matches:
+        ax.add_patch(patch(match.true, fill=False, edgecolor=GREY, linewidth=4, alpha=0.5))
+        ax.add_patch(patch(match.found, fill=False, edgecolor=KIND_COLORS[match.found.kind], linewidth=1.5))
+    ax.set(xlim=(corner[0], corner[0] + side), ylim=(corner[1], corner[1] + side))
+    ax.set_xlabel(f"grey line: the truth\nsquares: cells of {1000 * cell:g} mm", size=8, loc="left")
+    set_title(ax, f"e) Farthest off: {1000 * off:.{digits_of_mm(cell)}f} mm")
+    board.add_patch(Rectangle(corner, side, side, fill=False, edgecolor=INK, linewidth=1, zorder=9))
 
 
 def plot_recording(points: ArrayLike, found: Iterable[Detection | Shape], size: float) -> Figure:
