@@ -14,6 +14,7 @@ import pytest
 
 import primkit.study
 from primkit.__main__ import main
+from primkit.commands.words import exit_code
 from primkit.formats import load_found, load_world, save_world
 from primkit.shapes import Circle, Polygon
 from primkit.study import JOURNAL, repeat
@@ -148,6 +149,24 @@ def test_a_board_is_drawn_without_scipy_and_matplotlib(tmp_path):
 
 
 # --- lessons ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.usefixtures("here")
+def test_what_comes_next_can_be_pasted_from_a_folder_with_a_space(capsys):
+    assert main(["lessons", "my lessons"]) == 0
+    assert capsys.readouterr().out.endswith(f'Next   jupyter lab "{Path("my lessons", "00_start_here.ipynb")}"\n')
+    assert main(["make-map", "--out", "my map.geojson"]) == 0
+    assert capsys.readouterr().out.endswith('Next   primkit map --map "my map.geojson"\n')
+
+
+def test_a_package_that_is_not_installed_is_named(capsys):
+    """Such as nbgrader, which students' environments do not have."""
+    assert exit_code(lambda: __import__("no_such_package")) == 2
+    told = capsys.readouterr().err
+    assert told.startswith("primkit: no_such_package is not installed; primkit doctor looks further, and for")
+    assert told.endswith('-m pip install "primkit-lab[teach]"\n')
+    with pytest.raises(ModuleNotFoundError, match=r"primkit\.nowhere"):  # ours: an error in the kit itself
+        exit_code(lambda: __import__("primkit.nowhere"))
 
 
 def test_lessons_are_written_and_nobody_s_work_is_lost(here, capsys):
@@ -547,6 +566,10 @@ REFUSED = {
     "map's ending": (
         "make-map --out map.png",
         "primkit: map.png: the name of a map must end in .geojson or .json or .wbt, got .png",
+    ),
+    "lessons into a file": (
+        "lessons bad.geojson",
+        "primkit: bad.geojson must be a folder, got a file or a folder below a file",
     ),
     "map's folder": ("make-map --out no/map.geojson", "primkit: map.geojson: there is no folder {no}"),
 }

@@ -388,12 +388,29 @@ def test_nothing_is_written_over_a_course(course):
 
 
 def test_without_the_project_s_folder_one_sentence_says_where_to_get_it(tmp_path, capsys):
-    words = ["teach", "new-course", str(tmp_path / "course"), "--assignments", str(tmp_path / "nowhere")]
+    (tmp_path / "installed").mkdir()
+    words = ["teach", "new-course", str(tmp_path / "course"), "--assignments", str(tmp_path / "installed")]
     assert main(words) == 2
     told = capsys.readouterr().err
     assert "there are no assignments in" in told
     assert "say --assignments teachers.zip" in told
     assert not (tmp_path / "course").exists()
+
+
+NO_ARCHIVES = {
+    "forgotten.zip": "forgotten.zip: there is no such archive or folder",
+    "map.png": "map.png must be a folder or an archive, such as a .zip, got neither",
+    "broken.zip": "broken.zip must be a folder or an archive, such as a .zip, got neither",
+}
+
+
+@pytest.mark.parametrize(("name", "sentence"), NO_ARCHIVES.items(), ids=NO_ARCHIVES)
+def test_what_is_no_archive_is_refused_in_one_sentence(name, sentence, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for there in ("map.png", "broken.zip"):
+        (tmp_path / there).write_bytes(b"no archive")
+    assert main(["teach", "new-course", "course", "--assignments", name]) == 2
+    assert capsys.readouterr().err == f"primkit: {sentence}\n"
 
 
 def test_all_is_there_in_a_new_course(course):
@@ -509,7 +526,7 @@ def test_a_course_is_made_from_the_teachers_archive(tmp_path):
     with pytest.raises(ValueError, match=r"without\.zip must hold source/ and grader/, got neither"):
         new_course(tmp_path / "other", archive)
     with pytest.raises(ValueError, match=r"an installed package holds none.* `git archive .*` makes an archive"):
-        new_course(tmp_path / "other", tmp_path / "nowhere")
+        new_course(tmp_path / "other", held)
 
 
 def test_elsewhere_is_no_course(tmp_path, capsys):

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal
 
 from ..table import count
 from .recording import LIDARS, lidar_named, map_recording, span
-from .words import Parser, millimetres, path, say, share, whole
+from .words import Parser, millimetres, path, quoted, say, share, whole
 
 if TYPE_CHECKING:
     from ..lidar import Lidar
@@ -178,4 +178,4 @@ def make_map(arguments: argparse.Namespace) -> None:
     save_world(world, arguments.out)
     say(f"Board  {_census(world)} (random: seed {arguments.seed}, {style} style, gap {arguments.gap:g} mm)")
     say(f"Wrote  {arguments.out}")
-    say(f"Next   primkit map --map {arguments.out}")
+    say(f"Next   primkit map --map {quoted(arguments.out)}")

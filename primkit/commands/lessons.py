@@ -13,7 +13,7 @@ from pathlib import Path
 
 from ..installed import PROJECT
 from ..table import count
-from .words import Parser, path, say
+from .words import Parser, path, quoted, say
 
 LESSONS_TEXT = "write the lessons into a folder"
 LESSONS_EXAMPLES = "A lesson that is there already stays as it is.\n"
@@ -26,11 +26,14 @@ def lessons_options(parser: Parser) -> None:
 
 def write_lessons(arguments: argparse.Namespace) -> None:
     """Copy each lesson that is not in the folder yet."""
+    from ..study import make_folder
+
     places = Path(__file__).parents[1] / "lessons", PROJECT / "notebooks"  # in a wheel; in the project's folder
     notebooks = [file for place in places for file in sorted(place.glob("[0-9]*.ipynb"))]
     if not notebooks:
         raise ValueError(f"there are no lessons in {' or '.join(map(str, places))}: install the package again")
-    (arguments.folder / "recordings").mkdir(parents=True, exist_ok=True)
+    for folder in (arguments.folder, arguments.folder / "recordings"):
+        make_folder(folder)
     new = [file for file in notebooks if not (arguments.folder / file.name).exists()]
     for file in new:
         shutil.copyfile(file, arguments.folder / file.name)
@@ -42,4 +45,4 @@ def write_lessons(arguments: argparse.Namespace) -> None:
         f"Wrote  {count(len(new), 'lesson')} into {arguments.folder}"
         + (f"; {stay} there already, which stay" * bool(stay))
     )
-    say(f"Next   jupyter lab {arguments.folder / notebooks[0].name}")
+    say(f"Next   jupyter lab {quoted(arguments.folder / notebooks[0].name)}")

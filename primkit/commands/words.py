@@ -19,7 +19,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn
 
-from ..installed import Finding
+from ..installed import DISTRIBUTION, Finding
 from ..table import count
 
 # What the library's sentences call differently.
@@ -116,6 +116,11 @@ def say(text: str) -> None:
     print(text.encode(encoding, "backslashreplace").decode(encoding))
 
 
+def quoted(file: Path) -> str:
+    """Return a path as a word of a command line, on any system."""
+    return f'"{file}"' if " " in str(file) else str(file)
+
+
 def tell_faults(findings: Sequence[Finding]) -> None:
     """Print what was looked at, and how many faults there are; end with 1 if there is one."""
     for finding in findings:
@@ -153,6 +158,11 @@ def exit_code(run: Callable[[], None]) -> int:
         return _complain(str(stop) or "stopped by Ctrl-C", 130)
     except MemoryError:
         return _complain("there is not enough memory for this: is a map, a size or a number too large?")
+    except ModuleNotFoundError as error:
+        if (error.name or __name__).partition(".")[0] == __name__.partition(".")[0]:
+            raise
+        teachers = f'{sys.executable} -m pip install "{DISTRIBUTION}[teach]"'
+        return _complain(f"{error.name} is not installed; primkit doctor looks further, and for teachers: {teachers}")
     except OSError as error:
         # Sentences from formats stand alone; the system's own come in parts.
         return _complain(f"{error.filename}: {error.strerror}" if error.filename else str(error))

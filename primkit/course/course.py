@@ -205,11 +205,16 @@ def new_course(root: str | Path, assignments: str | Path = ASSIGNMENTS) -> Cours
     course, assignments = Course(root), Path(assignments)
     if assignments.is_file():
         with TemporaryDirectory() as folder:
-            shutil.unpack_archive(assignments, folder)
+            try:
+                shutil.unpack_archive(assignments, folder)
+            except shutil.ReadError:
+                raise ValueError(f"{assignments} must be a folder or an archive, such as a .zip, got neither") from None
             inside = next((path.parent for path in Path(folder).rglob("grader")), None)
             if inside is None:
                 raise ValueError(f"{assignments} must hold source/ and grader/, got neither")
             return new_course(root, inside)
+    if assignments != ASSIGNMENTS and not assignments.exists():
+        raise ValueError(f"{assignments}: there is no such archive or folder")
     if not all((assignments / name).is_dir() for name in COPIED_FOLDERS):
         raise ValueError(
             f"there are no assignments in {assignments}: an installed package holds none, for they hold the solutions; "
