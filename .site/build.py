@@ -32,6 +32,8 @@ ON_FRONT = ("The course", "Does it hold?")  # of README.md; the rest is the page
 MOVED = {".site/": "", "notebooks/teacher/": "teacher/", ".github/CHANGELOG": "changelog"}  # the links of README.md
 WORDS = "**[Start here](start.md)**, [try it live](live.md), or read: the sliders and quizzes of these pages work."
 TABLE = re.compile(r"(?:^\|.*\n)+", re.MULTILINE)
+SIZE, PLOT = re.compile(r'width="\S+" height="\S+" viewBox="[^"]+"'), re.compile(r'viewBox="([^"]+)" overflow="hidden"')
+STORY = re.compile(r"^!\[.*\]\(data/pictures/story\.png\)$", re.MULTILINE)
 LINK = re.compile(r"(?<!!)\[([^\]]+)\]\((?!https?:)([^)#\s]*)(#[^)]*)?\)")
 # Of the teacher's pack: what needs no solution to be read. The pages of the problem sets stay with their solutions.
 PACK = ("README.md", "class.md", "running.md", "untrusted_code.md", "accessibility.md", "lessons/*.md")
@@ -81,8 +83,9 @@ def lessons_into(folder):
         lesson = json.loads(path.read_text(encoding="utf-8"))
         sources = ["".join(cell["source"]) for cell in lesson["cells"]]
         titles[path.stem] = f"{path.stem[:2]} {sources[0].partition(chr(10))[0].removeprefix('# ')}"
-        slider = getattr(pk.widgets, SLIDER.search("\n".join(sources))[1])()
-        (folder / f"{path.stem}.svg").write_text(slider.draw(), encoding="utf-8")
+        drawn = getattr(pk.widgets, SLIDER.search("\n".join(sources))[1])().draw()
+        plot = f'viewBox="{PLOT.search(drawn)[1]}"'  # alone: the words around it are too small to be read on a door
+        (folder / f"{path.stem}.svg").write_text(SIZE.sub(plot, drawn, count=1), encoding="utf-8")
         (folder / path.name).write_text(json.dumps(page_of(lesson)), encoding="utf-8")
     below = [f"{title} <{name}>" for name, title in titles.items()]
     doors = "\n".join(f"* [![](lessons/{name}.svg) {title}](lessons/{name}.ipynb)" for name, title in titles.items())
@@ -96,7 +99,7 @@ def front(readme, doors):
         readme = readme.replace(f"]({there}", f"]({here}")
     intro, *sections = re.sub(r"<!--.*?-->\n*", "", readme, flags=re.DOTALL).split("\n## ")
     first = [section for section in sections if section.startswith(ON_FRONT)]
-    shown = "\n## ".join([f"{intro}\n{WORDS}\n", *first])
+    shown = "\n## ".join([f"{intro}\n{WORDS}\n\n{STORY.search(readme)[0]}\n", *first])
     chapters = "start", "lessons/index", "live", "Results <results>", "api/index", "Teachers <teacher/README>"
     yield "index.md", TABLE.sub(lambda _: doors + "\n", shown, count=1) + tree((*chapters, "Changes <changelog>"))
     yield "start.md", "# " + "\n## ".join(section for section in sections if section not in first)

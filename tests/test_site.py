@@ -115,9 +115,20 @@ def test_every_public_name_has_its_place_in_the_reference():
     assert [f"{wing}.{name}" for wing, name, value in public if id(value) not in values] == []
 
 
+def test_the_front_page_shows_before_it_tells():
+    import build  # here: once a site was built, ruff takes this name for the folder's
+
+    pages = dict(build.front((ROOT / "README.md").read_text(encoding="utf-8"), "* the doors"))
+    in_turn = ("film.svg", "(start.md)", "story.png", "* the doors", "```verdict", "**1.00**", "free.png")
+    places = [pages["index.md"].find(it) for it in in_turn]
+    assert places == sorted(places)
+    assert places[0] > 0
+    assert "pip install -r environment.txt" in pages["start.md"]
+
+
 def test_the_teacher_s_pages_lead_to_every_lesson():
     """A link to what is not on the site loses its address without a word: these must not."""
-    import build  # here: once a site was built, ruff takes this name for the folder's
+    import build
 
     pages = "\n".join(text for _, text in build.pack(ROOT / "notebooks" / "teacher"))
     named = {(where, name) for where, name in re.findall(r"\]\((\S*?)(\d\d_\w+)\.ipynb\)", pages)}

@@ -150,6 +150,8 @@ function quiz(script) {
 
 // The theme calls its search field "Search" for who cannot see it, and shows its keys as well.
 for (const field of document.querySelectorAll(".search-button-field")) field.setAttribute("aria-label", field.textContent.trim());
+// What is printed in columns keeps them, and is scrolled where it is too wide; sentences are wrapped.
+for (const text of document.querySelectorAll(".cell_output pre")) text.classList.toggle("columns", /\S {2,}\S/.test(text.textContent));
 document.querySelectorAll(".primkit-states").forEach(slider);
 document.querySelectorAll(".primkit-predict").forEach(prediction);
 document.querySelectorAll("script.primkit-quiz").forEach(quiz);
