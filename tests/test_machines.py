@@ -62,9 +62,9 @@ def many(n):
 
 def test_the_stand_in_refuses_what_such_machines_refuse():
     with pytest.raises(TypeError, match="Cannot cast"):
-        Narrow().repeat(np.arange(2), np.array([1, 2]))
+        Narrow().repeat(np.arange(2), np.array([1, 2], dtype=np.int64))
     with pytest.raises(TypeError, match="Cannot cast"):
-        Narrow().bincount(np.arange(2))
+        Narrow().bincount(np.arange(2, dtype=np.int64))
 
 
 def test_no_count_is_hidden_from_the_stand_in():
