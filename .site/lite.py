@@ -39,7 +39,7 @@ def main():
             (stage / "lessons" / path.name).write_text(text, encoding="utf-8")
         shutil.copytree(ROOT / "notebooks" / "recordings", stage / "lessons" / "recordings")
         command = [sys.executable, "-m", "jupyterlite_core", "build", "--lite-dir", folder, "--output-dir", str(out)]
-        command += ["--contents", str(stage / "lessons"), "--piplite-wheels", str(wheel)]
+        command += ["--contents", str(stage / "lessons"), "--piplite-wheels", str(wheel), "--no-sourcemaps"]
         subprocess.run(command, check=True, cwd=folder)
         needed = [f"files/{path.name}" for path in lessons] + [f"pypi/{wheel.name}", "lab/index.html"]
     absent = [name for name in needed if not (out / name).is_file()]
