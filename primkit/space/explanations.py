@@ -16,7 +16,7 @@ import numpy as np
 
 from ..arguments import Floats
 from .along_beam import ON_IT, Beams, Pulls, information, likelihood, refine
-from .ends import FIRST_END, UNLIKELY, End, end_of, grown, outward
+from .ends import UNLIKELY, End, end_of, grown, growths
 from .solids import Plane, Solid, hit
 from .starts import ENOUGH, REACHES, misfit, starts
 
@@ -69,9 +69,9 @@ def explained(solid: Solid, beams: Beams, ground: Plane | None) -> Explanation:
     ends = dict[int, End]()
     told = np.zeros((solid.numbers, solid.numbers))
     for _ in range(LOOKS_AT_ENDS):
-        for k in range(FIRST_END[solid.kind], solid.numbers):
+        for k, step in growths(solid).items():
             ends[k] = end_of(solid, k, beams, ground)
-            solid = solid.moved(ends[k].growth * outward(solid, k) * np.eye(solid.numbers)[k])
+            solid = solid.moved(ends[k].growth * step)
         pulls = told_by_ends(ends, np.diag(information(solid, beams)))
         solid, told = refine(solid, beams, pulls), pulls.matrix() if pulls else told
     known = information(solid, beams) + told + PRIOR_PULL * np.eye(solid.numbers)

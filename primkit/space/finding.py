@@ -74,28 +74,23 @@ class FoundSolid:
     @property
     def sizes(self) -> dict[str, float]:
         """The radius; radius and height; or length, width and height along the rows of ``frame``; metres."""
-        if self.kind == "box":
-            return dict(zip(("length", "width", "height"), (2 * self.solid.half).tolist(), strict=True))
-        return {"radius": float(self.solid.half[0])} | (
-            {"height": 2 * float(self.solid.half[2])} if self.kind == "cylinder" else {}
-        )
+        return self.solid.sizes
 
     @cached_property
     def std(self) -> dict[str, float]:
         """The standard deviation of each size, metres."""
-        return {name: float(np.sqrt(d @ self.explanation.covariance @ d)) for name, d in self._slopes().items()}
+        return {name: float(np.sqrt(d @ self.explanation.covariance @ d)) for name, d in self.solid.slopes.items()}
 
     @cached_property
     def turn_std(self) -> float:
         """The standard deviation of its axis, or of its turn, all ways together, radians; of a ball 0."""
-        about = {"sphere": slice(0), "cylinder": slice(2, 4), "box": slice(3)}[self.kind]
-        return float(np.sqrt(np.diag(self.explanation.covariance)[about].sum()))
+        return float(np.sqrt(np.diag(self.explanation.covariance)[: self.solid.turns].sum()))
 
     @cached_property
     def between(self) -> dict[str, tuple[float, float]]:
         """The interval that holds each size, metres; up to inf where no beam bounds it."""
         told = {}
-        for name, slope in self._slopes().items():
+        for name, slope in self.solid.slopes.items():
             ends = [self.explanation.ends[k] for k in np.flatnonzero(slope).tolist() if k in self.explanation.ends]
             low = sum(end.growth - end.between[0] for end in ends)
             high = sum(np.inf if end.unbounded else end.between[1] - end.growth for end in ends)
@@ -109,13 +104,6 @@ class FoundSolid:
         rough = {name for name, std in self.std.items() if std > SETTLED_STD}
         wide = {name for name, (low, high) in self.between.items() if high - low > 2 * SIGMAS_TOLD * SETTLED_STD}
         return tuple(name for name in self.sizes if name in rough | wide)
-
-    def _slopes(self) -> dict[str, Floats]:
-        """How each size changes with the solid's numbers."""
-        e = np.eye(self.solid.numbers)
-        if self.kind == "box":
-            return {name: e[6 + k] - e[3 + k] for k, name in enumerate(self.sizes)}
-        return {"radius": e[3]} if self.kind == "sphere" else {"radius": e[4], "height": e[6] - e[5]}
 
     def __repr__(self) -> str:
         sizes = ", ".join(f"{name} {'about ' * (name in self.open)}{size:.3f}" for name, size in self.sizes.items())
