@@ -27,7 +27,7 @@ from .starts import settled
 
 CROWD, SPARSE = 8, 1.8  # nearest points; times as far as usual
 PATCH, PATCH_TRIALS, AGREES = 0.2, 40, 3.0  # share of the points in a sample; samples; standard deviations
-ROOM_AT_ENDS = 1.0  # m: as long as a cylinder is being fitted, its points lie on no end
+LONG = 4.0  # times the points' extent: as long as a cylinder is being fitted, they lie on no end
 
 
 def solid_through(
@@ -54,13 +54,12 @@ def solid_through(
         return None
     if model is SPHERE:
         return settled(Sphere(found.params[:3], found.params[3]), points, noise_std)
-    middle, axis, radius = found.params[:3], found.params[3:6], found.params[6]
-    along = (points[found.inliers] - middle) @ axis
-    low, high = along.min() - ROOM_AT_ENDS, along.max() + ROOM_AT_ENDS
-    tube = settled(Cylinder(middle + (low + high) / 2 * axis, axis, radius, high - low), points, noise_std)
-    along = (points[np.abs(tube.distance(points)) <= AGREES * noise_std] - tube.center) @ tube.frame[2]
+    place, axis, radius = found.params[:3], found.params[3:6], found.params[6]
+    endless = Cylinder(place, axis, radius, LONG * float(np.linalg.norm(np.ptp(points, axis=0))))
+    place, axis, radius = (tube := settled(endless, points, noise_std)).center, tube.frame[2], tube.half[0]
+    along = (points[np.abs(tube.distance(points)) <= AGREES * noise_std] - place) @ axis
     low, high = along.min(), along.max()
-    return Cylinder(tube.center + (low + high) / 2 * tube.frame[2], tube.frame[2], float(tube.half[0]), high - low)
+    return Cylinder(place + (low + high) / 2 * axis, axis, radius, high - low)
 
 
 def in_a_crowd(points: Floats) -> Bools:

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 
 from ..arguments import short
-from .finding import FoundSolid
+from .explanations import FoundSolid
 from .scenes import Scene
 from .solids import Box, Cylinder, Solid, Sphere
 

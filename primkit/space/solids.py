@@ -30,7 +30,7 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arguments import Floats, as_floats, as_point, as_points, as_positive
+from ..arguments import ROUNDING, Floats, as_floats, as_point, as_points, as_positive
 
 SolidKind = Literal["sphere", "cylinder", "box"]
 Chord = tuple[Floats, Floats]  # the ranges at which beams enter and leave, shape (N,) each
@@ -93,6 +93,16 @@ class Solid:
         radius = e[self.first_end - min(1, self.ball) : self.first_end]
         return dict(zip(self.called, np.vstack([radius, high - low]), strict=True))
 
+    @property
+    def radii(self) -> Floats:
+        """The radius of the ball, and half of each interval, metres."""
+        return self.half[max(0, self.ball - 1) :]
+
+    @property
+    def around(self) -> float:
+        """The radius of a ball around its centre that holds it, metres."""
+        return float(np.linalg.norm(self.radii))
+
     def reach(self, direction: Floats) -> float:
         """Return how far it goes from its centre along a unit vector, metres."""
         return float(self._lengths((self.frame @ direction * self.half)[:, None]).sum())
@@ -137,12 +147,13 @@ class Solid:
 
     def moved(self, step: Floats) -> Solid:
         """Return the solid after a step of its numbers, shape (numbers,)."""
-        m, half = self.ball, self.half.copy()
-        turns, ball, low, high = np.split(step, [self.turns, self.first_end, self.first_end + 3 - m])
+        m, half, by = self.ball, self.half.copy(), np.zeros(3)
+        low, high = step[self.first_end :].reshape(2, -1)
+        half[:m] += step[self.first_end - 1]
         half[m:] += (high - low) / 2
-        half[:m] += ball[m:]
-        shift = np.append(ball[:m], (low + high) / 2)
-        frame = turn(np.append(turns, np.zeros(3 - self.turns))) @ self.frame
+        shift = np.append(step[self.turns : self.turns + m], (low + high) / 2)
+        by[: self.turns] = step[: self.turns]
+        frame = turn(by) @ self.frame if self.turns else self.frame
         return altered(self, center=self.center + shift @ self.frame, frame=frame, half=half)
 
     def _lengths(self, x: Floats) -> Floats:
@@ -152,7 +163,7 @@ class Solid:
 
     def _outside(self, x: Floats) -> Floats:
         """Return how far points in its frame, shape (3, N), lie outside of each part."""
-        return self._lengths(x) - self.half[max(0, self.ball - 1) :, None]
+        return self._lengths(x) - self.radii[:, None]
 
     def __repr__(self) -> str:
         made = ", ".join(f"{name}={np.round(getattr(self, name), 3).tolist()}" for name in self.given)
@@ -276,4 +287,4 @@ def as_direction(direction: ArrayLike, name: str) -> Floats:
     length = float(np.linalg.norm(vector))
     if length == 0:
         raise ValueError(f"{name} must be longer than 0, got {vector.tolist()}")
-    return vector / length
+    return vector if abs(length - 1) < ROUNDING else vector / length  # so that what was written is read back
