@@ -31,7 +31,7 @@ from .explanations import SETTLED_STD, FoundSolid, explanation
 from .ground import find_ground, groups, taken_apart
 from .lidar3d import Cloud
 from .scenes import within
-from .solids import Plane, hit
+from .solids import Plane
 
 THIN = (0.1, 0.07, 0.05)  # m: a group that no solid explains is linked anew, so far apart
 NEAR_GROUPS = 0.5  # m: groups whose returns come nearer may be one solid's
@@ -117,9 +117,7 @@ class Look:
 
         if not np.isfinite(cKDTree(larger.points).query(part.points, distance_upper_bound=NEAR_GROUPS)[0]).any():
             return None
-        origins, directions, ranges = self.cloud.beams(part.members)
-        off = ranges - hit(larger.solid, origins, directions)
-        of_larger = np.mean(np.abs(off) <= ON_IT * self.noise_std) >= MOSTLY
+        of_larger = np.mean(np.abs(larger.solid.distance(part.points)) <= ON_IT * self.noise_std) >= MOSTLY
         if not of_larger and not any(_may_hold(one, other) for one, other in ((larger, part), (part, larger))):
             return None
         both = explanation(self.around(np.union1d(part.members, larger.members)), self.ground, rng=self.rng)

@@ -21,9 +21,10 @@ from numpy.typing import ArrayLike
 
 from ..arguments import Bools, Floats, as_points, as_positive, as_rng
 from ..ransac import Model, run_ransac
+from .along_beam import ROUNDS, belongs
 from .consensus import CYLINDER, SPHERE, with_nearest
 from .solids import Cylinder, Solid, Sphere
-from .starts import settled
+from .starts import drawn, nearer
 
 CROWD, SPARSE = 8, 1.8  # nearest points; times as far as usual
 PATCH, PATCH_TRIALS, AGREES = 0.2, 40, 3.0  # share of the points in a sample; samples; standard deviations
@@ -52,14 +53,17 @@ def solid_through(
     found = run_ransac(points, nearest, AGREES * noise_std, trials=PATCH_TRIALS, refit=False, rng=as_rng(rng))
     if found is None:
         return None
+    place, r = found.params[:3], float(found.params[-1])
+    endless = LONG * float(np.linalg.norm(np.ptp(points, axis=0)))
+    start = Sphere(place, r) if model is SPHERE else Cylinder(place, found.params[3:6], r, endless)
+    solid = drawn(start, points, noise_std)
+    for _ in range(ROUNDS):
+        solid = nearer(solid, points, belongs(solid.distance(points), noise_std), noise_std)
     if model is SPHERE:
-        return settled(Sphere(found.params[:3], found.params[3]), points, noise_std)
-    place, axis, radius = found.params[:3], found.params[3:6], found.params[6]
-    endless = Cylinder(place, axis, radius, LONG * float(np.linalg.norm(np.ptp(points, axis=0))))
-    place, axis, radius = (tube := settled(endless, points, noise_std)).center, tube.frame[2], tube.half[0]
-    along = (points[np.abs(tube.distance(points)) <= AGREES * noise_std] - place) @ axis
+        return solid
+    along = (points[np.abs(solid.distance(points)) <= AGREES * noise_std] - solid.center) @ solid.frame[2]
     low, high = along.min(), along.max()
-    return Cylinder(place + (low + high) / 2 * axis, axis, radius, high - low)
+    return Cylinder(solid.center + (low + high) / 2 * solid.frame[2], solid.frame[2], solid.half[0], high - low)
 
 
 def in_a_crowd(points: Floats) -> Bools:
