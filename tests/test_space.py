@@ -9,12 +9,11 @@ from primkit import space
 from primkit.ransac import run_ransac, trials_needed
 from primkit.space.along_beam import linearised
 from primkit.space.consensus import spheres_through
-from primkit.space.ends import End, end_of, lowest_point
+from primkit.space.ends import End, end_of
 from primkit.space.explanations import told_by_ends
 from primkit.space.finding import Look
 from primkit.space.ground import find_ground, groups
 from primkit.space.lidar3d import turn_of
-from primkit.space.scenes import UP
 from primkit.space.solids import UNIT, altered, hit
 
 AROUND = [
@@ -182,14 +181,6 @@ def test_misses_alone_bound_a_height():
     own = look.beams(members, members)  # the same returns, but nobody says what was missed
     assert end_of(post, 6, own, None).unbounded
     assert not end_of(post, 6, look.around(members), None).unbounded
-
-
-@pytest.mark.parametrize("solid", SOLIDS[1:], ids=lambda solid: solid.kind)
-def test_the_lowest_point_goes_down_as_each_number_says(solid):
-    slope = lowest_point(solid, -UP)
-    for k, step in enumerate(1e-6 * np.eye(solid.numbers)):
-        lower, higher = (s.center[2] - s.reach(UP) for s in (solid.moved(step), solid.moved(-step)))
-        assert (higher - lower) / 2e-6 == pytest.approx(slope[k], abs=1e-5)
 
 
 def test_ranges_want_nothing_where_an_end_has_left_them():

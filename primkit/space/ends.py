@@ -22,7 +22,7 @@ FAR_OUT, MOST_LESS = 100.0, 0.95  # m: so far out an end is what is nearest; sha
 FARTHEST_END = 0.6  # m from where it is supposed
 FACES_GROUND, NEARLY_LEVEL = 0.05, 0.9998  # cosines of an end's slope: it faces the ground at all, it is level
 FINEST_END, LOOK_STEPS = 1e-4, 16  # m; steps to each side, each longer by the same factor
-FINE_STEPS, ZOOMS = 33, 2
+FINE_STEPS, ZOOMS, SMALL_STEP = 33, 2, 1e-6  # the last: rad or m, of a difference
 UNLIKELY = 9.0  # in log likelihood below the best: out of question
 SHARE_OUTSIDE = 0.02  # of the probability, of the interval that is told
 
@@ -85,11 +85,8 @@ def end_of(solid: Solid, k: int, beams: Beams, ground: Plane | None) -> End:
         a, enters, leaves = away[own], first[own], last[own]
         with np.errstate(divide="ignore", invalid="ignore"):
             cut = (steps[:, None] - start[own]) / a
-        enters, leaves = (
-            np.where(a < 0, np.maximum(enters, cut), enters),
-            np.where(a > 0, np.minimum(leaves, cut), leaves),
-        )
-        return first_of(enters, leaves)
+        leaves = np.where(a > 0, np.minimum(leaves, cut), leaves)
+        return first_of(np.where(a < 0, np.maximum(enters, cut), enters), leaves)
 
     def log_likelihoods(steps: Floats) -> Floats:
         by_returns = returned(beams.ranges[met[own]] - ranges(steps), beams.noise_std).sum(axis=1)
@@ -133,11 +130,10 @@ def to_ground(solid: Solid, normal: Floats, ground: Plane) -> float:
 
 
 def lowest_point(solid: Solid, down: Floats) -> Floats:
-    """Return by how much the point of a cylinder or box that lies farthest down goes down as each number grows."""
-    part = np.maximum(np.arange(3) - solid.ball + 1, 0)  # that each of its axes belongs to
-    ways = (np.unique(part)[:, None] == part) * (solid.frame @ down)
-    shares = np.linalg.norm(ways, axis=1)
-    normals = ways / np.maximum(shares, np.finfo(float).tiny)[:, None]  # of the faces that meet there, outwards
-    beyond = (normals * solid.half).sum(axis=0) + FAR_OUT * normals
-    slope: Floats = shares @ solid.speeds(solid.center + beyond @ solid.frame)[1]
-    return slope
+    """Return by how much the point of a solid that lies farthest down goes down as each number grows."""
+
+    def depth(step: Floats) -> float:
+        moved = solid.moved(step)
+        return float(moved.center @ down) + moved.reach(down)
+
+    return np.array([(depth(step) - depth(-step)) / (2 * SMALL_STEP) for step in SMALL_STEP * np.eye(solid.numbers)])

@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from ..arguments import Floats, Ints
-from .along_beam import ON_IT, Beams, Told, information, likelihood, refine
+from .along_beam import LARGEST_SOLID, ON_IT, Beams, Told, information, likelihood, refine
 from .ends import UNLIKELY, End, end_of, grown, growths
 from .solids import Plane, Solid, SolidKind, hit
 from .starts import ENOUGH, REACHES, misfit, starts
@@ -29,7 +29,6 @@ FAR_BEHIND = 100.0  # in log likelihood of the starts: what is farther behind th
 LOOKS_AT_ENDS = 2
 PERFECT, MOST_MISSED = 0.9, 0.03  # shares of a group's returns: explained at least, and passed through at most
 SUREST, MORE_THAN_RANGES = 1e-5, 0.05  # m: no end is known better; share of what ranges tell: less counts as nothing
-PRIOR_PULL = 1e-6  # 1 / m^2: keeps what nothing tells from being infinite
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +148,8 @@ def explained(solid: Solid, beams: Beams, ground: Plane | None) -> FoundSolid:
             solid = solid.moved(ends[k].growth * step)
         told = told_by_ends(ends, np.diag(information(solid, beams)))
         solid = refine(solid, beams, told)
-    known = information(solid, beams) + told[0] + PRIOR_PULL * np.eye(solid.numbers)
+    at_most = np.eye(solid.numbers) / LARGEST_SOLID**2  # what nothing tells is known to be no larger
+    known = information(solid, beams) + told[0] + at_most
     covariance = np.asarray(np.linalg.inv(known), dtype=float)
     own, near = beams[beams.own], ON_IT * beams.noise_std
     t, n = hit(solid, beams.origins, beams.directions), len(own.number)

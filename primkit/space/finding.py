@@ -34,7 +34,6 @@ from .scenes import within
 from .solids import Plane
 
 THIN = (0.1, 0.07, 0.05)  # m: a group that no solid explains is linked anew, so far apart
-NEAR_GROUPS = 0.5  # m: groups whose returns come nearer may be one solid's
 MOSTLY, NEARLY_IN = 0.8, 0.05  # share of a group's returns that lie on, or in, another's solid; m
 
 
@@ -113,10 +112,6 @@ class Look:
 
     def as_one(self, larger: FoundSolid, part: FoundSolid) -> FoundSolid | None:
         """Return two that were found as the one that explains both; None where two explain them better."""
-        from scipy.spatial import cKDTree
-
-        if not np.isfinite(cKDTree(larger.points).query(part.points, distance_upper_bound=NEAR_GROUPS)[0]).any():
-            return None
         of_larger = np.mean(np.abs(larger.solid.distance(part.points)) <= ON_IT * self.noise_std) >= MOSTLY
         if not of_larger and not any(_may_hold(one, other) for one, other in ((larger, part), (part, larger))):
             return None

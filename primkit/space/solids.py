@@ -82,7 +82,7 @@ class Solid:
     @property
     def sizes(self) -> dict[str, float]:
         """The radius; radius and height; or length, width and height along the rows of ``frame``; metres."""
-        each = np.append(self.half[: min(1, self.ball)], 2 * self.half[self.ball :])
+        each = np.append(self.half[: self.ball > 0], 2 * self.half[self.ball :])
         return dict(zip(self.called, each.tolist(), strict=True))
 
     @property
@@ -90,7 +90,7 @@ class Solid:
         """How each size grows with each number, shape (numbers,)."""
         e = np.eye(self.numbers)
         low, high = np.split(e[self.first_end :], 2)
-        radius = e[self.first_end - min(1, self.ball) : self.first_end]
+        radius = e[self.first_end - (self.ball > 0) : self.first_end]
         return dict(zip(self.called, np.vstack([radius, high - low]), strict=True))
 
     @property
@@ -120,10 +120,8 @@ class Solid:
                 straight = (across == 0) & ((o[:m] ** 2).sum(axis=0) <= r**2)  # along the axis, within
                 enters, leaves = np.where(straight, enters, along - to_rim), np.where(straight, leaves, along + to_rim)
             for ok, dk, half in zip(o[m:], d[m:], self.half[m:], strict=True):
-                to_low, to_high = (
-                    (-half - ok) / dk,
-                    (half - ok) / dk,
-                )  # along a bound itself NaN, which counts as always
+                # Along a bound itself, 0 / 0 is NaN, and stands for always.
+                to_low, to_high = (-half - ok) / dk, (half - ok) / dk
                 enters = np.maximum(enters, np.fmax(np.minimum(to_low, to_high), -np.inf))
                 leaves = np.minimum(leaves, np.fmin(np.maximum(to_low, to_high), np.inf))
         return enters, leaves
@@ -138,11 +136,11 @@ class Solid:
         outside = self._outside(x)
         own = np.arange(len(outside))[:, None] == outside.argmax(axis=0)  # the part whose surface is met
         n = np.sign(x)
-        n[m:] *= own[min(1, m) :]
+        n[m:] *= own[m > 0 :]
         if m:
             n[:m] = x[:m] * (own[0] / np.maximum(self._lengths(x)[0], TINY))
         turns = (x[[1, 2, 0]] * n[[2, 0, 1]] - x[[2, 0, 1]] * n[[1, 2, 0]])[: self.turns]
-        ball = np.vstack([n[:m], own[: min(1, m)]])
+        ball = np.vstack([n[:m], own[: m > 0]])
         return n.T @ self.frame, np.vstack([turns, ball, np.minimum(n[m:], 0), np.maximum(n[m:], 0)]).T
 
     def moved(self, step: Floats) -> Solid:
@@ -261,8 +259,7 @@ def frame_of(axis: Floats) -> Floats:
     x, y, z = axis
     u = np.array([0.0, z, -y] if abs(x) < 0.6 else [-z, 0.0, x])
     u /= np.sqrt(u @ u)
-    (a, b, c) = u
-    return np.array([u, [y * c - z * b, z * a - x * c, x * b - y * a], axis])
+    return np.array([u, np.cross(axis, u), axis])
 
 
 def turn(by: Floats) -> Floats:
