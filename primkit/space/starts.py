@@ -98,6 +98,8 @@ def _cylinder(points: Floats, planes: list[tuple[Floats, Floats]], noise_std: fl
 def _box(points: Floats, planes: list[tuple[Floats, Floats]], noise_std: float) -> Solid:
     """Return the box that points lie nearest to, of those that turn about the normals of planes."""
     frames = np.concatenate([QUARTER_TURNS @ frame_of(n) for n, _ in planes])
+    upright_last = np.argsort(np.abs(frames[:, :, 2]), axis=1, kind="stable")  # so that height is what all call so
+    frames = np.take_along_axis(frames, upright_last[:, :, None], axis=1)
     x = points @ np.swapaxes(frames, 1, 2)
     low, high = np.percentile(x, [OUTERMOST, 100 - OUTERMOST], axis=1)
     off = np.maximum(low[:, None] - x, x - high[:, None]).max(axis=2)
