@@ -150,6 +150,8 @@ def test_kinds_are_right_and_intervals_hold(how):
         for f, true in pairs(found, scene):
             assert f.kind == true.kind
             assert f.certain
+            assert (f.turn_std == 0) == (f.kind == "sphere")
+            assert f.turn_std < 0.05
             sizes = 2 * true.half if f.kind == "box" else [true.half[0], 2 * true.half[2]]
             if f.kind == "box":  # by the axes that lie along each other
                 sizes = sizes[np.abs(f.solid.frame @ true.frame.T).argmax(axis=1)]

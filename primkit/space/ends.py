@@ -39,7 +39,6 @@ class End:
     std: float
     between: tuple[float, float]
     slope: Floats
-    on_ground: bool = False
     unbounded: bool = False
 
 
@@ -104,7 +103,7 @@ def end_of(solid: Solid, k: int, beams: Beams, ground: Plane | None) -> End:
     inside = steps[p > np.exp(-UNLIKELY)].tolist()
     if most == contact and inside[-1] == most and ground is not None:
         slope = slope if -normal @ ground.normal > NEARLY_LEVEL else lowest_point(solid, -ground.normal)
-        return End(most, 0.0, (inside[0], most), slope, on_ground=True)
+        return End(most, 0.0, (inside[0], most), slope)
     p /= p.sum()
     mean = float(p @ steps)
     std = float(np.sqrt(p @ (steps - mean) ** 2 + (steps[1] - steps[0]) ** 2 / 12))
