@@ -9,12 +9,11 @@ from primkit import space
 from primkit.ransac import run_ransac, trials_needed
 from primkit.space.along_beam import linearised
 from primkit.space.consensus import spheres_through
-from primkit.space.ends import End, end_of, lowest_point
+from primkit.space.ends import End, end_of
 from primkit.space.explanations import told_by_ends
-from primkit.space.finding import Sight
+from primkit.space.finding import Look
 from primkit.space.ground import find_ground, groups
-from primkit.space.lidar3d import beams
-from primkit.space.scenes import UP
+from primkit.space.lidar3d import turn_of
 from primkit.space.solids import UNIT, altered, hit
 
 AROUND = [
@@ -34,8 +33,7 @@ def seen_scenes(n, first, **how):
         scene = space.random_scene(int(rng.integers(1, 5)), gap=how.get("gap", 0.15), rng=rng)
         places = AROUND[: how.get("poses", 6)]
         cloud = space.scan(scene, places, space.Lidar3d(spurious=how.get("spurious", 0.0)), rng=rng)
-        turn = cloud.directions().reshape(-1, 3)
-        met = np.concatenate([scene.hit(np.array(place), turn)[1] for place in places])
+        met = np.concatenate([scene.hit(np.array(place), cloud.turn)[1] for place in places])
         inside = any(solid.distance(np.array([place]))[0] < 0.3 for solid in scene.solids for place in places)
         if not inside and all(np.count_nonzero(met == k) >= 60 for k in range(len(scene.solids))):
             n -= 1
@@ -49,7 +47,7 @@ def pairs(found, scene):
 
 @pytest.mark.parametrize("solid", SOLIDS, ids=lambda solid: solid.kind)
 def test_ranges_change_as_the_speeds_say(solid):
-    origin, turn = np.array([1.9, -1.2, 0.9]), beams(np.linspace(-0.4, 0.2, 40), 300).reshape(-1, 3)
+    origin, turn = np.array([1.9, -1.2, 0.9]), turn_of(np.linspace(-0.4, 0.2, 40), 300)
     t = hit(solid, origin, turn)
     turn, t = turn[t < np.inf], t[t < np.inf]
     normals, speeds = solid.speeds(origin + t[:, None] * turn)
@@ -152,6 +150,8 @@ def test_kinds_are_right_and_intervals_hold(how):
         for f, true in pairs(found, scene):
             assert f.kind == true.kind
             assert f.certain
+            assert (f.turn_std == 0) == (f.kind == "sphere")
+            assert f.turn_std < 0.05
             sizes = 2 * true.half if f.kind == "box" else [true.half[0], 2 * true.half[2]]
             if f.kind == "box":  # by the axes that lie along each other
                 sizes = sizes[np.abs(f.solid.frame @ true.frame.T).argmax(axis=1)]
@@ -178,29 +178,19 @@ def test_misses_alone_bound_a_height():
     low, high = found.between["height"]
     assert low <= 0.7 <= high
     assert high - low < 0.05
-    blind = np.where(cloud.hits, cloud.ranges, np.inf)  # the same returns, but nobody says what was missed
-    sight = Sight(cloud, cloud.directions().reshape(-1, 3), 0.005, None)
+    look = Look(cloud, 0.005, None, np.random.default_rng(0))
     members = groups(cloud, find_ground(cloud, rng=0))[0]
-    own = sight.beams(members, members)
+    own = look.beams(members, members)  # the same returns, but nobody says what was missed
     assert end_of(post, 6, own, None).unbounded
-    assert not end_of(post, 6, sight.around(members), None).unbounded
-    assert blind.shape == cloud.ranges.shape
-
-
-@pytest.mark.parametrize("solid", SOLIDS[1:], ids=lambda solid: solid.kind)
-def test_the_lowest_point_goes_down_as_each_number_says(solid):
-    slope = lowest_point(solid, -UP)
-    for k, step in enumerate(1e-6 * np.eye(solid.numbers)):
-        lower, higher = (s.center[2] - s.reach(UP) for s in (solid.moved(step), solid.moved(-step)))
-        assert (higher - lower) / 2e-6 == pytest.approx(slope[k], abs=1e-5)
+    assert not end_of(post, 6, look.around(members), None).unbounded
 
 
 def test_ranges_want_nothing_where_an_end_has_left_them():
     """They err by 0.05 mm: an end that moves by as much they pull back, one that moves by 3 mm they do not."""
     by_ranges = np.full(7, 1 / 5e-5**2)
     for growth, pulled in ((5e-5, True), (3e-3, False)):
-        pulls = told_by_ends({6: End(growth, 4e-5, (0, 0.01), np.eye(7)[6])}, by_ranges)
-        assert (pulls.at[0] > 0) == pulled
+        _, vector = told_by_ends({6: End(growth, 4e-5, (0, 0.01), np.eye(7)[6])}, by_ranges)
+        assert (vector[6] > 0) == pulled
 
 
 def test_a_scene_without_a_ground_in_sight():
@@ -225,9 +215,8 @@ def test_the_same_seed_gives_the_same_solids_wherever_the_scene_is():
 def test_weights_forget_returns_from_nowhere():
     ball = space.Sphere((2, 0, 0), 0.5)
     cloud = space.scan(space.Scene([ball]), [(0, 0, 1.0)], space.Lidar3d(noise_std=0.0), rng=0)
-    sight = Sight(cloud, cloud.directions().reshape(-1, 3), 0.005, None)
-    met = np.flatnonzero(hit(ball, (0, 0, 1.0), sight.directions) < np.inf)
-    own = sight.beams(met, met)
+    met = np.flatnonzero(hit(ball, (0, 0, 1.0), cloud.turn) < np.inf)
+    own = Look(cloud, 0.005, None, np.random.default_rng(0)).beams(met, met)
     own.ranges[0] -= 0.3
     weights, gap, _ = linearised(ball, own)
     assert weights[0] < 1e-6
@@ -267,7 +256,7 @@ def test_a_wrong_argument_is_refused_in_one_sentence(call, message):
 
 
 def test_directions_are_unit_vectors():
-    assert np.allclose(np.linalg.norm(beams(np.linspace(-1, 1, 5), 7), axis=2), 1, atol=UNIT)
+    assert np.allclose(np.linalg.norm(turn_of(np.linspace(-1, 1, 5), 7), axis=1), 1, atol=UNIT)
 
 
 def test_what_was_found_is_written_and_read_back():

@@ -15,7 +15,8 @@ The rooms, from what there is to what is found: ``solids``, ``scenes``, ``lidar3
 """
 
 from .consensus import CYLINDER, PLANE, SPHERE, with_nearest
-from .finding import FoundSolid, find_solids
+from .explanations import FoundSolid
+from .finding import find_solids
 from .lidar3d import Cloud, Lidar3d, scan
 from .points_alone import solid_through
 from .scenes import Scene, random_scene

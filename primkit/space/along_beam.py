@@ -31,6 +31,8 @@ SETTLED_GAIN = 1e-3  # in log likelihood: less ends them
 SOFT = 100.0  # 1 / m^2: what no beam tells is held by this much, so that no step is without end
 LARGEST_SOLID = 10.0  # m: a larger solid is none of these
 
+Told = tuple[Floats, Floats]  # of a step q: q . v - q . M q / 2 is added to the log likelihood; M, (n, n), and v, (n,)
+
 
 @dataclass(frozen=True, eq=False)
 class Beams:
@@ -38,12 +40,14 @@ class Beams:
 
     Parameters
     ----------
+    number : array of int, shape (N,), in the cloud's ranges, laid flat
     origins, directions : arrays, shape (N, 3): where they start, metres, and unit vectors
     ranges : array, shape (N,): metres, inf where nothing came back
     own : array of bool, shape (N,): whether the return is one of the group's
     noise_std : float, of the ranges, metres
     """
 
+    number: Ints
     origins: Floats
     directions: Floats
     ranges: Floats
@@ -51,7 +55,8 @@ class Beams:
     noise_std: float
 
     def __getitem__(self, which: Bools | Ints) -> Beams:
-        return Beams(self.origins[which], self.directions[which], self.ranges[which], self.own[which], self.noise_std)
+        o, d, r = self.origins[which], self.directions[which], self.ranges[which]
+        return Beams(self.number[which], o, d, r, self.own[which], self.noise_std)
 
     def points(self) -> Floats:
         """Return where the beams came back from, shape (N, 3), metres."""
@@ -97,38 +102,20 @@ def linearised(solid: Solid, beams: Beams) -> tuple[Floats, Floats, Floats]:
     return weights, gap, speeds / np.where(slant == 0, np.inf, slant)[:, None]
 
 
-@dataclass(frozen=True, eq=False)
-class Pulls:
-    """What hits and misses want: ``slopes @ step`` near ``at``, metres, with so much ``information``, 1 / m^2.
-
-    Shapes (E, numbers), (E,) and (E,); the step is from the solid that ``refine`` begins with.
-    """
-
-    slopes: Floats
-    at: Floats
-    information: Floats
-
-    def matrix(self) -> Floats:
-        """Return the information of all together, shape (numbers, numbers)."""
-        return (self.slopes.T * self.information) @ self.slopes
-
-
-def refine(solid: Solid, beams: Beams, pulls: Pulls | None = None) -> Solid:
-    """Return the solid of maximum likelihood near this one."""
-    own = beams[beams.own]
-    none = np.empty((0, solid.numbers))
-    pulls = pulls or Pulls(none, none[:, 0], none[:, 0])
-    gone = np.zeros(solid.numbers)  # steps add up: the frame hardly turns
+def refine(solid: Solid, beams: Beams, told: Told | None = None) -> Solid:
+    """Return the solid of maximum likelihood near this one; with what else is told of its numbers, from here on."""
+    own, gone = beams[beams.own], np.zeros(solid.numbers)  # steps add up: the frame hardly turns
+    matrix, vector = told or (np.zeros((solid.numbers, solid.numbers)), gone)
 
     def merit(tried: Solid, gone: Floats) -> float:
-        return likelihood(tried, own) - 0.5 * float(pulls.information @ (pulls.slopes @ gone - pulls.at) ** 2)
+        return likelihood(tried, own) + float((vector - 0.5 * matrix @ gone) @ gone)
 
     damping, now = 0.0, merit(solid, gone)
     for _ in range(ROUNDS):
         w, e, slopes = linearised(solid, own)
         by_ranges = slopes.T * w / beams.noise_std**2
-        gradient = by_ranges @ e + (pulls.information * (pulls.at - pulls.slopes @ gone)) @ pulls.slopes
-        curvature = by_ranges @ slopes + pulls.matrix()
+        gradient = by_ranges @ e + vector - matrix @ gone
+        curvature = by_ranges @ slopes + matrix
         for _ in range(DAMPINGS):
             held = curvature + np.diag(damping * np.diag(curvature) + SOFT)
             step = np.asarray(np.linalg.solve(held, gradient), dtype=float)

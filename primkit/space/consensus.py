@@ -145,16 +145,17 @@ def _from_planes(params: Floats, points: Floats) -> Floats:
 
 
 def _from_spheres(params: Floats, points: Floats) -> Floats:
-    c, r = params[:, :3], params[:, 3:]
-    squares = (points**2).sum(axis=1) - 2 * c @ points.T + (c**2).sum(axis=1, keepdims=True)
-    return np.abs(np.sqrt(np.maximum(squares, 0.0)) - r)
+    return np.abs(np.sqrt(np.maximum(_squares(params[:, :3], points), 0.0)) - params[:, 3:])
 
 
 def _from_cylinders(params: Floats, points: Floats) -> Floats:
-    c, w, r = params[:, :3], params[:, 3:6], params[:, 6:]
-    squares = (points**2).sum(axis=1) - 2 * c @ points.T + (c**2).sum(axis=1, keepdims=True)
+    c, w = params[:, :3], params[:, 3:6]
     along = w @ points.T - (c * w).sum(axis=1, keepdims=True)
-    return np.abs(np.sqrt(np.maximum(squares - along**2, 0.0)) - r)
+    return np.abs(np.sqrt(np.maximum(_squares(c, points) - along**2, 0.0)) - params[:, 6:])
+
+
+def _squares(c: Floats, points: Floats) -> Floats:
+    return (points**2).sum(axis=1) - 2 * c @ points.T + (c**2).sum(axis=1, keepdims=True)
 
 
 PLANE = Model(3, planes_through, _from_planes, lambda points: planes_through(points[None])[0], 3)

@@ -19,11 +19,10 @@ from .along_beam import ON_IT, Beams, missed, returned
 from .solids import Plane, Solid, first_of
 
 FAR_OUT, MOST_LESS = 100.0, 0.95  # m: so far out an end is what is nearest; share of a size that may be taken away
-FIRST_END = {"sphere": 4, "cylinder": 5, "box": 3}  # of a solid's numbers; the low ends stand before the high ones
 FARTHEST_END = 0.6  # m from where it is supposed
 FACES_GROUND, NEARLY_LEVEL = 0.05, 0.9998  # cosines of an end's slope: it faces the ground at all, it is level
 FINEST_END, LOOK_STEPS = 1e-4, 16  # m; steps to each side, each longer by the same factor
-FINE_STEPS, ZOOMS = 33, 2
+FINE_STEPS, ZOOMS, SMALL_STEP = 33, 2, 1e-6  # the last: rad or m, of a difference
 UNLIKELY = 9.0  # in log likelihood below the best: out of question
 SHARE_OUTSIDE = 0.02  # of the probability, of the interval that is told
 
@@ -40,22 +39,19 @@ class End:
     std: float
     between: tuple[float, float]
     slope: Floats
-    on_ground: bool = False
     unbounded: bool = False
 
 
-def outward(solid: Solid, k: int) -> float:
-    """Return 1 when a solid grows at the end with number k as the number does, and -1 when it shrinks."""
-    first = FIRST_END[solid.kind]
-    return 1.0 if k - first >= (solid.numbers - first) // 2 else -1.0
+def growths(solid: Solid) -> dict[int, Floats]:
+    """Return by how much its numbers change, shape (numbers,), when a solid grows by a metre at each end."""
+    low, high = np.split(np.eye(solid.numbers)[solid.first_end :], 2)
+    return dict(enumerate([*-low, *high], solid.first_end))
 
 
 def grown(solid: Solid, ends: dict[int, End] | None = None, known: float = 0.0) -> Solid:
     """Return the solid ``FARTHEST_END`` longer at each end, or at those that are known worse than ``known``, metres."""
-    step = np.zeros(solid.numbers)
-    for k in range(FIRST_END[solid.kind], solid.numbers):
-        step[k] = outward(solid, k) * FARTHEST_END * (ends is None or ends[k].std > known)
-    return solid.moved(step)
+    steps = [step for k, step in growths(solid).items() if ends is None or ends[k].std > known]
+    return solid.moved(FARTHEST_END * np.sum([np.zeros(solid.numbers), *steps], axis=0))
 
 
 def end_of(solid: Solid, k: int, beams: Beams, ground: Plane | None) -> End:
@@ -64,8 +60,9 @@ def end_of(solid: Solid, k: int, beams: Beams, ground: Plane | None) -> End:
     A solid is what all else leaves of a beam, from ``first`` to ``last``, cut off by the plane of this end. A return of
     the group tells by its range, step by step; a miss speaks against every growth that would have met it.
     """
-    j = (k - FIRST_END["box"]) % 3 if solid.kind == "box" else 2  # the axis that the end lies across
-    normal, slope = outward(solid, k) * solid.frame[j], outward(solid, k) * np.eye(solid.numbers)[k]
+    j = solid.ball + (k - solid.first_end) % (3 - solid.ball)  # the axis that the end lies across
+    slope = growths(solid)[k]
+    normal = slope[k] * solid.frame[j]
     least, most, contact = -2 * solid.half[j] * MOST_LESS, FARTHEST_END, np.inf
     if ground is not None:
         contact = max(to_ground(solid, normal, ground), 0.0)
@@ -87,11 +84,8 @@ def end_of(solid: Solid, k: int, beams: Beams, ground: Plane | None) -> End:
         a, enters, leaves = away[own], first[own], last[own]
         with np.errstate(divide="ignore", invalid="ignore"):
             cut = (steps[:, None] - start[own]) / a
-        enters, leaves = (
-            np.where(a < 0, np.maximum(enters, cut), enters),
-            np.where(a > 0, np.minimum(leaves, cut), leaves),
-        )
-        return first_of(enters, leaves)
+        leaves = np.where(a > 0, np.minimum(leaves, cut), leaves)
+        return first_of(np.where(a < 0, np.maximum(enters, cut), enters), leaves)
 
     def log_likelihoods(steps: Floats) -> Floats:
         by_returns = returned(beams.ranges[met[own]] - ranges(steps), beams.noise_std).sum(axis=1)
@@ -109,7 +103,7 @@ def end_of(solid: Solid, k: int, beams: Beams, ground: Plane | None) -> End:
     inside = steps[p > np.exp(-UNLIKELY)].tolist()
     if most == contact and inside[-1] == most and ground is not None:
         slope = slope if -normal @ ground.normal > NEARLY_LEVEL else lowest_point(solid, -ground.normal)
-        return End(most, 0.0, (inside[0], most), slope, on_ground=True)
+        return End(most, 0.0, (inside[0], most), slope)
     p /= p.sum()
     mean = float(p @ steps)
     std = float(np.sqrt(p @ (steps - mean) ** 2 + (steps[1] - steps[0]) ** 2 / 12))
@@ -135,11 +129,10 @@ def to_ground(solid: Solid, normal: Floats, ground: Plane) -> float:
 
 
 def lowest_point(solid: Solid, down: Floats) -> Floats:
-    """Return by how much the point of a cylinder or box that lies farthest down goes down as each number grows."""
-    c = solid.frame @ down
-    ways = np.diag(c) if solid.kind == "box" else np.array([[c[0], c[1], 0.0], [0.0, 0.0, c[2]]])
-    shares = np.linalg.norm(ways, axis=1)
-    normals = ways / np.maximum(shares, np.finfo(float).tiny)[:, None]  # of the faces that meet there, outwards
-    beyond = (normals * solid.half).sum(axis=0) + FAR_OUT * normals
-    slope: Floats = shares @ solid.speeds(solid.center + beyond @ solid.frame)[1]
-    return slope
+    """Return by how much the point of a solid that lies farthest down goes down as each number grows."""
+
+    def depth(step: Floats) -> float:
+        moved = solid.moved(step)
+        return float(moved.center @ down) + moved.reach(down)
+
+    return np.array([(depth(step) - depth(-step)) / (2 * SMALL_STEP) for step in SMALL_STEP * np.eye(solid.numbers)])

@@ -21,107 +21,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
-from ..arguments import Floats, Ints, as_rng, check_type
+from ..arguments import Ints, as_rng, check_type
 from .along_beam import ON_IT, Beams
 from .ends import FARTHEST_END, grown
-from .explanations import Explanation, explanations
-from .ground import LEAST_RETURNS, find_ground, groups, linked
+from .explanations import SETTLED_STD, FoundSolid, explanation
+from .ground import find_ground, groups, taken_apart
 from .lidar3d import Cloud
 from .scenes import within
-from .solids import Plane, Solid, SolidKind, hit
+from .solids import Plane
 
-CERTAIN = 10.0  # evidence ahead of the next kind: very strong (Kass and Raftery, 1995)
 THIN = (0.1, 0.07, 0.05)  # m: a group that no solid explains is linked anew, so far apart
-NEAR_GROUPS = 0.5  # m: groups whose returns come nearer may be one solid's
 MOSTLY, NEARLY_IN = 0.8, 0.05  # share of a group's returns that lie on, or in, another's solid; m
-LEAST_ON_FACE = 4  # returns without which a face was not seen
-SETTLED_STD = 0.002  # m: a size that is known worse is open
-SIGMAS_TOLD = 2.5  # standard deviations that a size's interval goes to each side, at least
-
-
-@dataclass(frozen=True, eq=False)
-class FoundSolid:
-    """A solid that was found.
-
-    Parameters
-    ----------
-    solid : Sphere, Cylinder or Box
-    others : tuple of str
-        Other kinds that it may be; ``"something else"`` when it does not fit.
-    points : array, shape (N, 3): the returns that it was found from, metres
-    explanation : Explanation
-    """
-
-    solid: Solid
-    others: tuple[str, ...]
-    points: Floats
-    explanation: Explanation
-
-    @property
-    def kind(self) -> SolidKind:
-        """``"sphere"``, ``"cylinder"`` or ``"box"``."""
-        return self.solid.kind
-
-    @property
-    def certain(self) -> bool:
-        """Whether its kind is beyond doubt, and it explains its returns."""
-        return not self.others
-
-    @property
-    def sizes(self) -> dict[str, float]:
-        """The radius; radius and height; or length, width and height along the rows of ``frame``; metres."""
-        if self.kind == "box":
-            return dict(zip(("length", "width", "height"), (2 * self.solid.half).tolist(), strict=True))
-        return {"radius": float(self.solid.half[0])} | (
-            {"height": 2 * float(self.solid.half[2])} if self.kind == "cylinder" else {}
-        )
-
-    @cached_property
-    def std(self) -> dict[str, float]:
-        """The standard deviation of each size, metres."""
-        return {name: float(np.sqrt(d @ self.explanation.covariance @ d)) for name, d in self._slopes().items()}
-
-    @cached_property
-    def turn_std(self) -> float:
-        """The standard deviation of its axis, or of its turn, all ways together, radians; of a ball 0."""
-        about = {"sphere": slice(0), "cylinder": slice(2, 4), "box": slice(3)}[self.kind]
-        return float(np.sqrt(np.diag(self.explanation.covariance)[about].sum()))
-
-    @cached_property
-    def between(self) -> dict[str, tuple[float, float]]:
-        """The interval that holds each size, metres; up to inf where no beam bounds it."""
-        told = {}
-        for name, slope in self._slopes().items():
-            ends = [self.explanation.ends[k] for k in np.flatnonzero(slope).tolist() if k in self.explanation.ends]
-            low = sum(end.growth - end.between[0] for end in ends)
-            high = sum(np.inf if end.unbounded else end.between[1] - end.growth for end in ends)
-            size, least = self.sizes[name], SIGMAS_TOLD * self.std[name]
-            told[name] = max(0.0, size - max(low, least)), size + max(high, least)
-        return told
-
-    @property
-    def open(self) -> tuple[str, ...]:
-        """The sizes that the scan does not settle: they are known to lie ``between`` two values, no better."""
-        rough = {name for name, std in self.std.items() if std > SETTLED_STD}
-        wide = {name for name, (low, high) in self.between.items() if high - low > 2 * SIGMAS_TOLD * SETTLED_STD}
-        return tuple(name for name in self.sizes if name in rough | wide)
-
-    def _slopes(self) -> dict[str, Floats]:
-        """How each size changes with the solid's numbers."""
-        e = np.eye(self.solid.numbers)
-        if self.kind == "box":
-            return {name: e[6 + k] - e[3 + k] for k, name in enumerate(self.sizes)}
-        return {"radius": e[3]} if self.kind == "sphere" else {"radius": e[4], "height": e[6] - e[5]}
-
-    def __repr__(self) -> str:
-        sizes = ", ".join(f"{name} {'about ' * (name in self.open)}{size:.3f}" for name, size in self.sizes.items())
-        x, y, z = self.solid.center
-        doubt = f"; or {' or '.join(self.others)}" if self.others else ""
-        return f"{self.kind} at ({x:.3f}, {y:.3f}, {z:.3f}), {sizes} m{doubt}"
 
 
 def find_solids(cloud: Cloud, *, rng: int | np.random.Generator | None = None) -> list[FoundSolid]:
@@ -142,121 +55,73 @@ def find_solids(cloud: Cloud, *, rng: int | np.random.Generator | None = None) -
     check_type(cloud, Cloud, "cloud must be a Cloud, of beams and not of points alone")
     rng = as_rng(rng)
     ground = find_ground(cloud, rng=rng)
-    sight = Sight(cloud, cloud.directions().reshape(-1, 3), ground.noise_std, ground.plane)
-    whole = [group for members in groups(cloud, ground) for group in _taken_apart(sight, members, rng)]
-    found = [_told(sight, group) for group in _joined(sight, whole, rng)]
-    return sorted(found, key=lambda each: each.solid.center[0])
+    look = Look(cloud, ground.noise_std, ground.plane, rng)
+    whole = [found for members in groups(cloud, ground) for found in look.at_parts(members)]
+    return sorted(look.joined(whole), key=lambda each: each.solid.center[0])
 
 
 @dataclass(frozen=True, eq=False)
-class Sight:
-    """A cloud with its beams' directions, (L A, 3), the noise of its ranges, metres, and the ground."""
+class Look:
+    """How groups of returns are looked at: in a cloud, with the noise of its ranges, metres, and the ground."""
 
     cloud: Cloud
-    directions: Floats
     noise_std: float
     ground: Plane | None
+    rng: np.random.Generator
 
     def beams(self, number: Ints, members: Ints) -> Beams:
         """Return some beams of the cloud, by number, of which the members are a group's own."""
-        pose, beam = np.divmod(number, len(self.directions))
-        ranges, own = self.cloud.ranges.ravel(), np.zeros(self.cloud.ranges.size, dtype=bool)
-        own[members] = True
-        return Beams(self.cloud.origins[pose], self.directions[beam], ranges[number], own[number], self.noise_std)
+        own = np.isin(number, members, assume_unique=True)
+        return Beams(number, *self.cloud.beams(number), own, self.noise_std)
 
     def around(self, members: Ints) -> Beams:
         """Return the beams that bear on a group: they reach the ball around it that its solid can fill."""
-        points = self.points(members)
+        points, turn = self.cloud.points(members), self.cloud.turn
         low, high = points.min(axis=0), points.max(axis=0)
         center, reach = (low + high) / 2, float(np.linalg.norm(high - low)) / 2 + FARTHEST_END
         bearing = []
         for pose, origin in enumerate(self.cloud.origins):
-            near = np.flatnonzero(within(center, reach, origin, self.directions))
+            near = np.flatnonzero(within(center, reach, origin, turn))
             far_enough = self.cloud.ranges[pose].ravel()[near] > np.linalg.norm(center - origin) - reach
-            bearing.append(pose * len(self.directions) + near[far_enough])
+            bearing.append(pose * len(turn) + near[far_enough])
         return self.beams(np.concatenate(bearing), members)
 
-    def points(self, members: Ints) -> Floats:
-        """Return where a group's beams came back from, shape (N, 3), metres."""
-        return self.beams(members, members).points()
+    def at_parts(self, members: Ints, thin: Sequence[float] = THIN) -> list[FoundSolid]:
+        """Return what stands behind a group; or behind its parts, where they explain it better."""
+        whole = explanation(self.around(members), self.ground, rng=self.rng)
+        if whole is None or not whole.fits:
+            for k, apart in enumerate(thin, 1):
+                if len(parts := taken_apart(self.cloud, members, apart)) > 1:
+                    found = [each for part in parts for each in self.at_parts(part, thin[k:])]
+                    if whole is None or sum(each.evidence for each in found) > whole.evidence:
+                        return found
+                    break
+        return [whole] if whole else []
+
+    def joined(self, found: list[FoundSolid]) -> list[FoundSolid]:
+        """Return what was found, the largest first, in which parts of one solid are one."""
+        kept = list[FoundSolid]()
+        for part in sorted(found, key=lambda each: -len(each.members)):
+            for k, larger in enumerate(kept):
+                if (both := self.as_one(larger, part)) is not None:
+                    kept[k] = both
+                    break
+            else:
+                kept.append(part)
+        return kept
+
+    def as_one(self, larger: FoundSolid, part: FoundSolid) -> FoundSolid | None:
+        """Return two that were found as the one that explains both; None where two explain them better."""
+        of_larger = np.mean(np.abs(larger.solid.distance(part.points)) <= ON_IT * self.noise_std) >= MOSTLY
+        if not of_larger and not any(_may_hold(one, other) for one, other in ((larger, part), (part, larger))):
+            return None
+        both = explanation(self.around(np.union1d(part.members, larger.members)), self.ground, rng=self.rng)
+        apart = larger.evidence + part.evidence
+        better = both is not None and both.fits and both.evidence > apart
+        return both if of_larger or better else None
 
 
-@dataclass(frozen=True, eq=False)
-class Group:
-    """The numbers of a group's beams, and its explanations, the likeliest first."""
-
-    members: Ints
-    ranked: list[Explanation]
-
-    @property
-    def best(self) -> Explanation:
-        """The likeliest explanation."""
-        return self.ranked[0]
-
-
-def _taken_apart(sight: Sight, members: Ints, rng: np.random.Generator, thin: Sequence[float] = THIN) -> list[Group]:
-    """Return a group with its explanations; or those of its parts, where they explain it better."""
-    ranked = explanations(sight.around(members), sight.ground, rng=rng)
-    whole = [Group(members, ranked)] if ranked else []
-    if not thin or (ranked and ranked[0].fits):
-        return whole
-    label = linked(sight.points(members), thin[0])
-    parts = [part for k in np.unique(label) if len(part := members[label == k]) >= LEAST_RETURNS]
-    if len(parts) < 2:
-        return _taken_apart(sight, members, rng, thin[1:]) if len(thin) > 1 else whole
-    apart = [group for part in parts for group in _taken_apart(sight, part, rng, thin[1:])]
-    better = not ranked or sum(group.best.evidence for group in apart) > ranked[0].evidence
-    return apart if better else whole
-
-
-def _joined(sight: Sight, found: list[Group], rng: np.random.Generator) -> list[Group]:
-    """Return groups, the largest first, in which those that are parts of one solid are one."""
-    kept = list[Group]()
-    for group in sorted(found, key=lambda group: -len(group.members)):
-        for k, larger in enumerate(kept):
-            if not _close(sight.points(group.members), sight.points(larger.members)):
-                continue
-            on_it = _share_on(larger.best.solid, sight.beams(group.members, group.members))
-            if on_it < MOSTLY and not (_may_hold(larger, sight, group) or _may_hold(group, sight, larger)):
-                continue
-            members = np.union1d(group.members, larger.members)
-            ranked = explanations(sight.around(members), sight.ground, rng=rng)
-            apart = larger.best.evidence + group.best.evidence
-            if ranked and (on_it >= MOSTLY or (ranked[0].fits and ranked[0].evidence > apart)):
-                kept[k] = Group(members, ranked)
-                break
-        else:
-            kept.append(group)
-    return kept
-
-
-def _told(sight: Sight, group: Group) -> FoundSolid:
-    """Return what is said of a group: its likeliest solid, and the kinds that it may be as well."""
-    best = group.best
-    others: list[str] = [each.solid.kind for each in group.ranked[1:] if each.evidence > best.evidence - CERTAIN]
-    points = sight.points(group.members)
-    if best.solid.kind == "box":
-        faces = np.abs(best.solid.speeds(points)[1][:, 3:]).sum(axis=0)
-        if np.count_nonzero(faces >= LEAST_ON_FACE) < 2:
-            others.append("cylinder")  # a single face may as well be a cylinder's end
-    if not best.fits:
-        others.append("something else")
-    return FoundSolid(best.solid, tuple(dict.fromkeys(others)), points, best)
-
-
-def _close(a: Floats, b: Floats) -> bool:
-    """Tell whether two groups of points come near each other."""
-    from scipy.spatial import cKDTree
-
-    return bool(np.isfinite(cKDTree(a).query(b, distance_upper_bound=NEAR_GROUPS)[0]).any())
-
-
-def _share_on(solid: Solid, beams: Beams) -> float:
-    t = hit(solid, beams.origins, beams.directions)
-    return float((np.abs(beams.ranges - t) <= ON_IT * beams.noise_std).mean())
-
-
-def _may_hold(group: Group, sight: Sight, other: Group) -> bool:
-    """Tell whether a group's solid may be so large, where its ends are open, that it holds most of another group."""
-    as_large = grown(group.best.solid, group.best.ends, SETTLED_STD)
-    return bool(np.mean(as_large.distance(sight.points(other.members)) <= NEARLY_IN) >= MOSTLY)
+def _may_hold(found: FoundSolid, other: FoundSolid) -> bool:
+    """Tell whether a solid may be so large, where its ends are open, that it holds most of another's returns."""
+    as_large = grown(found.solid, found.ends, SETTLED_STD)
+    return bool(np.mean(as_large.distance(other.points) <= NEARLY_IN) >= MOSTLY)

@@ -54,10 +54,8 @@ def find_ground(cloud: Cloud, *, rng: int | np.random.Generator | None = None) -
     Where no level plane has ``LEAST_GROUND`` returns there is none, and the noise is supposed to be 10 mm.
     """
     every = -(-int(cloud.hits.sum()) // GROUND_SAMPLE) or 1
-    pose, layer, azimuth = (index[::every] for index in np.nonzero(cloud.hits))
-    origins, directions = cloud.origins[pose], cloud.directions()[layer, azimuth]
-    ranges = cloud.ranges[pose, layer, azimuth]
-    points = origins + ranges[:, None] * directions
+    number = np.flatnonzero(cloud.hits)[::every]
+    (origins, directions, ranges), points = cloud.beams(number), cloud.points(number)
     nothing = Ground(None, USUAL_NOISE, np.zeros(cloud.ranges.shape, dtype=bool))
     found = run_ransac(points[::GROUND_EVERY], PLANE, GROUND_REACH, trials=GROUND_TRIALS, rng=as_rng(rng))
     if found is None or abs(found.params[2]) < LEVEL_ENOUGH:
@@ -74,23 +72,23 @@ def find_ground(cloud: Cloud, *, rng: int | np.random.Generator | None = None) -
         terms = np.column_stack([np.ones_like(x), x, y]) * weights[:, None]
         a, b, c = np.linalg.lstsq(terms, z * weights)[0]  # z = a + b x + c y
         plane = Plane((-b, -c, 1), a / np.sqrt(1 + b * b + c * c))
-    turn = cloud.directions().reshape(-1, 3)
-    to_ground = np.array([plane.hit(origin, turn) for origin in cloud.origins]).reshape(cloud.ranges.shape)
+    to_ground = np.array([plane.hit(origin, cloud.turn) for origin in cloud.origins]).reshape(cloud.ranges.shape)
     with np.errstate(invalid="ignore"):
         return Ground(plane, noise, cloud.hits & (np.abs(cloud.ranges - to_ground) <= ON_GROUND * noise))
 
 
-def groups(cloud: Cloud, ground: Ground, apart: float = APART) -> list[Ints]:
+def groups(cloud: Cloud, ground: Ground) -> list[Ints]:
     """Return groups of returns that are not the ground's: the numbers of their beams, in ``ranges`` laid flat.
 
     Strays, which no beam beside them bears out, are left out; and groups of fewer than ``LEAST_RETURNS``.
     """
-    number = np.flatnonzero((in_company(cloud, ~ground.returns)).ravel())
-    pose, layer, azimuth = np.unravel_index(number, cloud.ranges.shape)
-    points = cloud.origins[pose] + cloud.ranges.ravel()[number, None] * cloud.directions()[layer, azimuth]
-    label = linked(points, apart)
-    order = np.argsort(label, kind="stable")
-    parts = np.split(number[order], np.flatnonzero(np.diff(label[order])) + 1) if len(order) else []
+    return taken_apart(cloud, np.flatnonzero(in_company(cloud, ~ground.returns)), APART)
+
+
+def taken_apart(cloud: Cloud, members: Ints, apart: float) -> list[Ints]:
+    """Return the parts of some returns, by the numbers of their beams, that lie so far apart, metres."""
+    label = linked(cloud.points(members), apart)
+    parts = [members[label == k] for k in range(label.max(initial=-1) + 1)]
     return [part for part in parts if len(part) >= LEAST_RETURNS]
 
 

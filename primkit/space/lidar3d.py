@@ -15,11 +15,24 @@ that is why a cloud is more than its points.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arguments import Bools, Floats, as_count, as_floats, as_points, as_positive, as_rng, as_share, check_type, limit
+from ..arguments import (
+    Bools,
+    Floats,
+    Ints,
+    as_count,
+    as_floats,
+    as_points,
+    as_positive,
+    as_rng,
+    as_share,
+    check_type,
+    limit,
+)
 from .scenes import Scene
 
 MOST_BEAMS_OF_ALL = 20_000_000  # in a cloud: 160 MB of ranges
@@ -102,24 +115,30 @@ class Cloud:
         """Which beams came back, shape (P, L, A)."""
         return self.ranges < np.inf
 
-    def directions(self) -> Floats:
-        """Return the unit vector along each beam of a turn, shape (L, A, 3), world frame."""
-        return beams(self.elevations, self.ranges.shape[2])
+    @cached_property
+    def turn(self) -> Floats:
+        """The unit vector along each beam of a full turn, shape (L A, 3), world frame."""
+        return turn_of(self.elevations, self.ranges.shape[2])
 
-    def points(self) -> Floats:
-        """Return where beams came back from, shape (N, 3), metres; place by place, layer by layer."""
-        pose, layer, azimuth = np.nonzero(self.hits)
-        return self.origins[pose] + self.ranges[self.hits][:, None] * self.directions()[layer, azimuth]
+    def beams(self, number: Ints) -> tuple[Floats, Floats, Floats]:
+        """Return origins, directions and ranges of beams, by their numbers in ``ranges`` laid flat, shape (N,)."""
+        pose, beam = np.divmod(number, len(self.turn))
+        return self.origins[pose], self.turn[beam], self.ranges.ravel()[number]
+
+    def points(self, number: Ints | None = None) -> Floats:
+        """Return where beams came back from, shape (N, 3), metres: all that did, in order, or some by number."""
+        origins, directions, ranges = self.beams(np.flatnonzero(self.hits) if number is None else number)
+        return origins + ranges[:, None] * directions
 
     def __repr__(self) -> str:
         places, layers, azimuths = self.ranges.shape
         return f"Cloud: {int(self.hits.sum())} returns of {places} x {layers} x {azimuths} beams"
 
 
-def beams(elevations: Floats, azimuths: int) -> Floats:
-    """Return the unit vector of each layer and azimuth, shape (L, A, 3)."""
+def turn_of(elevations: Floats, azimuths: int) -> Floats:
+    """Return the unit vector of each layer and azimuth, shape (L A, 3), layer by layer."""
     e, a = elevations[:, None], 2 * np.pi * np.arange(azimuths) / azimuths
-    return np.stack([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e) + 0 * a], axis=2)
+    return np.stack([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e) + 0 * a], axis=2).reshape(-1, 3)
 
 
 def scan(
@@ -138,7 +157,7 @@ def scan(
     """
     check_type(scene, Scene, "scene must be a Scene")
     origins, lidar, rng = as_points(origins, "origins", 3), lidar or Lidar3d(), as_rng(rng)
-    turn = beams(lidar.elevations, lidar.azimuths).reshape(-1, 3)
+    turn = turn_of(lidar.elevations, lidar.azimuths)
     limit(len(origins) * len(turn), MOST_BEAMS_OF_ALL, "a cloud must have at most {} beams")
     t = np.array([scene.hit(origin, turn)[0] for origin in origins]).reshape(len(origins), len(turn))
     seen = t <= lidar.range_max

@@ -21,13 +21,14 @@ from numpy.typing import ArrayLike
 
 from ..arguments import Bools, Floats, as_points, as_positive, as_rng
 from ..ransac import Model, run_ransac
+from .along_beam import ROUNDS, belongs
 from .consensus import CYLINDER, SPHERE, with_nearest
 from .solids import Cylinder, Solid, Sphere
-from .starts import settled
+from .starts import drawn, nearer
 
 CROWD, SPARSE = 8, 1.8  # nearest points; times as far as usual
 PATCH, PATCH_TRIALS, AGREES = 0.2, 40, 3.0  # share of the points in a sample; samples; standard deviations
-ROOM_AT_ENDS = 1.0  # m: as long as a cylinder is being fitted, its points lie on no end
+LONG = 4.0  # times the points' extent: as long as a cylinder is being fitted, they lie on no end
 
 
 def solid_through(
@@ -52,15 +53,17 @@ def solid_through(
     found = run_ransac(points, nearest, AGREES * noise_std, trials=PATCH_TRIALS, refit=False, rng=as_rng(rng))
     if found is None:
         return None
+    place, r = found.params[:3], float(found.params[-1])
+    endless = LONG * float(np.linalg.norm(np.ptp(points, axis=0)))
+    start = Sphere(place, r) if model is SPHERE else Cylinder(place, found.params[3:6], r, endless)
+    solid = drawn(start, points, noise_std)
+    for _ in range(ROUNDS):
+        solid = nearer(solid, points, belongs(solid.distance(points), noise_std), noise_std)
     if model is SPHERE:
-        return settled(Sphere(found.params[:3], found.params[3]), points, noise_std)
-    middle, axis, radius = found.params[:3], found.params[3:6], found.params[6]
-    along = (points[found.inliers] - middle) @ axis
-    low, high = along.min() - ROOM_AT_ENDS, along.max() + ROOM_AT_ENDS
-    tube = settled(Cylinder(middle + (low + high) / 2 * axis, axis, radius, high - low), points, noise_std)
-    along = (points[np.abs(tube.distance(points)) <= AGREES * noise_std] - tube.center) @ tube.frame[2]
+        return solid
+    along = (points[np.abs(solid.distance(points)) <= AGREES * noise_std] - solid.center) @ solid.frame[2]
     low, high = along.min(), along.max()
-    return Cylinder(tube.center + (low + high) / 2 * tube.frame[2], tube.frame[2], float(tube.half[0]), high - low)
+    return Cylinder(solid.center + (low + high) / 2 * solid.frame[2], solid.frame[2], solid.half[0], high - low)
 
 
 def in_a_crowd(points: Floats) -> Bools:

@@ -46,7 +46,7 @@ class Scene:
         t = Plane(UP, 0).hit(origin, directions)
         what = np.where(np.isfinite(t), GROUND, NOTHING)
         for k, solid in enumerate(self.solids):
-            near = np.flatnonzero(within(solid.center, float(np.linalg.norm(solid.half)), origin, directions))
+            near = np.flatnonzero(within(solid.center, solid.around, origin, directions))
             ti = hit(solid, origin, directions[near])
             first = ti < t[near]
             t[near[first]], what[near[first]] = ti[first], k
@@ -75,7 +75,7 @@ def random_scene(
     half : float
         Middles lie within so many metres of the z axis, along x and along y.
     gap : float
-        Seen from above, so many metres are free between the circles around two solids.
+        Seen from above, so many metres are free between the balls around two solids.
     rng : seed or numpy.random.Generator, optional
     """
     n_solids, half = as_count(n_solids, "n_solids", 0), as_positive(half, "half")
@@ -85,7 +85,7 @@ def random_scene(
     while len(solids) < n_solids:
         limit(tries := tries + 1, MOST_TRIES, "a scene must have room: tried {} places", "are there too many solids?")
         new = _random_solid(rng, rng.uniform(-half, half, 2))
-        if all(np.hypot(*(new.center - s.center)[:2]) > _reach(new) + _reach(s) + gap for s in solids):
+        if all(np.hypot(*(new.center - s.center)[:2]) > new.around + s.around + gap for s in solids):
             solids.append(new)
     return Scene(solids)
 
@@ -109,10 +109,3 @@ def _random_solid(rng: np.random.Generator, place: Floats) -> Solid:
         solid = Box(middle, frame, rng.uniform(*SIDES, 3))
     up = (rng.uniform(*LIFTS) if lifted else 0.0) - (solid.center[2] - solid.reach(UP))
     return altered(solid, center=solid.center + up * UP)
-
-
-def _reach(solid: Solid) -> float:
-    """Return the radius of a circle around the solid, seen from above, metres."""
-    if solid.kind == "box":
-        return float(np.linalg.norm((solid.frame.T * solid.half)[:2], axis=1).sum())
-    return float(np.linalg.norm(solid.half))

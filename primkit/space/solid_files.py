@@ -24,16 +24,11 @@ from typing import Any
 import numpy as np
 
 from ..arguments import short
-from .finding import FoundSolid
+from .explanations import FoundSolid
 from .scenes import Scene
 from .solids import Box, Cylinder, Solid, Sphere
 
-FIELDS = {
-    "sphere": ("center", "radius"),
-    "cylinder": ("center", "axis", "radius", "height"),
-    "box": ("center", "frame", "size"),
-}
-MAKERS = {"sphere": Sphere, "cylinder": Cylinder, "box": Box}
+MAKERS: dict[str, type[Solid]] = {each.kind: each for each in (Sphere, Cylinder, Box)}
 
 
 def as_json(solids: Iterable[Solid | FoundSolid]) -> str:
@@ -58,7 +53,7 @@ def from_json(text: str) -> Scene:
 
 def _told(each: Solid | FoundSolid) -> dict[str, Any]:
     solid = each.solid if isinstance(each, FoundSolid) else each
-    told = {"kind": solid.kind} | {name: np.asarray(getattr(solid, name)).tolist() for name in FIELDS[solid.kind]}
+    told = {"kind": solid.kind} | {name: np.asarray(getattr(solid, name)).tolist() for name in solid.given}
     if isinstance(each, FoundSolid):
         between = {name: [low, high if high < np.inf else None] for name, (low, high) in each.between.items()}
         told |= {"others": list(each.others), "std": each.std, "between": between}
@@ -67,10 +62,9 @@ def _told(each: Solid | FoundSolid) -> dict[str, Any]:
 
 def _solid(k: int, told: Any) -> Solid:
     kind = told.get("kind") if isinstance(told, dict) else None
-    if not isinstance(kind, str) or kind not in FIELDS or not set(FIELDS[kind]) <= set(told):
+    if not isinstance(kind, str) or kind not in MAKERS or not set(MAKERS[kind].given) <= set(told):
         raise ValueError(f"solid {k} must be a sphere, cylinder or box with its numbers, got {short(told)}")
     try:
-        solid: Solid = MAKERS[kind](*(told[name] for name in FIELDS[kind]))
+        return MAKERS[kind](*(told[name] for name in MAKERS[kind].given))
     except ValueError as error:
         raise ValueError(f"solid {k}: {error}") from None
-    return solid

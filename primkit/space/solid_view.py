@@ -3,6 +3,7 @@
 In:  solids, points, shape (N, 3), metres, and where it is seen from.
 Out: HTML: one image with its words, which follows the page's theme.
 
+>>> from primkit.space.solids import Sphere
 >>> html = view([Sphere((0, 0, 0.5), 0.5)], [(0.5, 0, 0.5)])
 >>> "1 solid and 1 point" in html, "data:image/svg+xml" in html
 (True, True)
@@ -21,11 +22,12 @@ from ..arguments import Floats, as_points
 from ..palette import BLUE, GREEN, INK, VERMILION
 from ..table import count
 from ..themed import themed
-from .solids import Cylinder, Solid, Sphere
+from .solids import Solid
 
 VIEW_WIDTH, VIEW_RIM = 420, 12  # px
 SOLID_COLORS = {"sphere": BLUE, "cylinder": VERMILION, "box": GREEN}
 ROUND = np.linspace(0, 2 * np.pi, 49)
+SQUARE, TO_TOP = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0), (-1, -1, 0)]), np.array([0, 0, 1])
 MOST_DOTS = 4000
 
 
@@ -70,14 +72,9 @@ def view(solids: Sequence[Solid] = (), points: ArrayLike = (), *, azimuth: float
 def net(solid: Solid) -> list[Floats]:
     """Return lines on the surface of a solid, each shape (M, 3), metres, world frame."""
     circle = np.column_stack([np.cos(ROUND), np.sin(ROUND), np.zeros_like(ROUND)])
-    lines: list[Floats]
-    if isinstance(solid, Sphere):
+    if solid.kind == "sphere":
         lines = [circle[:, order] for order in ([0, 1, 2], [0, 2, 1], [2, 0, 1])]
-    elif isinstance(solid, Cylinder):
-        lines = [np.add(circle, (0, 0, end)) for end in (-1, 1)]
-        lines += [np.array([[x, y, -1], [x, y, 1]]) for x, y, _ in circle[:-1:6]]
     else:
-        square = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)])
-        lines = [np.column_stack([square, np.full(5, end)]) for end in (-1, 1)]
-        lines += [np.array([[x, y, -1], [x, y, 1]]) for x, y in square[:4]]
+        rim, uprights = (circle, circle[:-1:6]) if solid.kind == "cylinder" else (SQUARE, SQUARE[:4])
+        lines = [rim - TO_TOP, rim + TO_TOP, *(np.array([foot - TO_TOP, foot + TO_TOP]) for foot in uprights)]
     return [solid.center + (line * solid.half) @ solid.frame for line in lines]

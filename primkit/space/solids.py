@@ -7,28 +7,30 @@ Out: frozen solids; for each beam the range at which it meets the surface, inf w
 >>> hit(ball, (0, 0, 0), [(1, 0, 0), (0, 1, 0)]).tolist()
 [1.5, inf]
 
-All that an estimator needs of a solid is four verbs:
+Every solid is a product of balls: a sphere is a ball of all three axes of its frame, a cylinder a disc of two of them
+times an interval of the third, a box three intervals. A point lies within it when it lies within each of its parts. So
+what an estimator needs of a solid is written once, for all kinds, part by part:
 
     chord      where a beam enters and leaves it; ``hit`` is the first of both in front of the beam's start
-    distance   how far a point lies outside, or, as a number below zero, inside of the part that is nearest to it
+    distance   how far a point lies outside of the part that it is most outside of; below zero, inside
     speeds     the outward normal n at a point x, and how fast x moves along it when a number q grows: n . dx/dq
     moved      the solid after a step of its numbers
 
 so a range t along a beam d changes by dt/dq = (n . dx/dq) / (n . d). The numbers, in the solid's own frame (its axes
-are the rows of ``frame``): sphere x, y, z, radius; cylinder across (2), tilt (2), radius, low and high end; box turn
-(3), three low faces, three high ones. Angles in radians, all others in metres.
+are the rows of ``frame``): turns about axes (a cylinder two, a box three, radians); a ball's or disc's shift along each
+of its axes, and its radius; the low ends of the intervals, and their high ends; metres.
 """
 
 from __future__ import annotations
 
 from copy import copy
 from dataclasses import dataclass
-from typing import ClassVar, Literal, TypeVar
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arguments import Floats, as_floats, as_point, as_points, as_positive
+from ..arguments import ROUNDING, Floats, as_floats, as_point, as_points, as_positive
 
 SolidKind = Literal["sphere", "cylinder", "box"]
 Chord = tuple[Floats, Floats]  # the ranges at which beams enter and leave, shape (N,) each
@@ -58,174 +60,176 @@ class Plane:
         return np.where(t > 0, t, np.inf)
 
 
-@dataclass(frozen=True, eq=False)
-class Sphere:
-    """A ball: its centre, shape (3,), and its radius, metres."""
+@dataclass(frozen=True, eq=False, repr=False)
+class Solid:
+    """A sphere, cylinder or box: a ball of the first axes of its frame, times an interval of each other one.
+
+    Its centre, shape (3,), its frame, the axes as rows, shape (3, 3), and half its extents along them, shape (3,),
+    metres.
+    """
 
     center: Floats
-    radius: float
-    kind: ClassVar[SolidKind] = "sphere"
-    numbers: ClassVar[int] = 4
-
-    def __init__(self, center: ArrayLike, radius: float) -> None:
-        vars(self).update(center=as_point(center, "center", 3), radius=as_positive(radius, "radius"))
-
-    @property
-    def frame(self) -> Floats:
-        """The world's own axes, shape (3, 3)."""
-        return np.eye(3)
+    frame: Floats
+    half: Floats
+    kind: ClassVar[SolidKind]
+    given: ClassVar[tuple[str, ...]]  # what it is made of, by name
+    called: ClassVar[tuple[str, ...]]  # its sizes: the radius of the ball, the lengths of the intervals
+    ball: ClassVar[int]  # axes of the ball
+    turns: ClassVar[int]  # numbers that turn it
+    first_end: ClassVar[int]  # of its numbers: the ends of the intervals are the last
+    numbers: ClassVar[int]
 
     @property
-    def half(self) -> Floats:
-        """Half the extents in its own frame, shape (3,), metres."""
-        return np.full(3, self.radius)
+    def sizes(self) -> dict[str, float]:
+        """The radius; radius and height; or length, width and height along the rows of ``frame``; metres."""
+        each = np.append(self.half[: self.ball > 0], 2 * self.half[self.ball :])
+        return dict(zip(self.called, each.tolist(), strict=True))
+
+    @property
+    def slopes(self) -> dict[str, Floats]:
+        """How each size grows with each number, shape (numbers,)."""
+        e = np.eye(self.numbers)
+        low, high = np.split(e[self.first_end :], 2)
+        radius = e[self.first_end - (self.ball > 0) : self.first_end]
+        return dict(zip(self.called, np.vstack([radius, high - low]), strict=True))
+
+    @property
+    def radii(self) -> Floats:
+        """The radius of the ball, and half of each interval, metres."""
+        return self.half[max(0, self.ball - 1) :]
+
+    @property
+    def around(self) -> float:
+        """The radius of a ball around its centre that holds it, metres."""
+        return float(np.linalg.norm(self.radii))
 
     def reach(self, direction: Floats) -> float:
         """Return how far it goes from its centre along a unit vector, metres."""
-        return self.radius
-
-    def chord(self, origins: ArrayLike, directions: ArrayLike) -> Chord:
-        """Return the ranges at which beams enter and leave, metres; NaN where they pass by."""
-        o, d = _local(self, origins, directions)
-        along = (o * d).sum(axis=0)
-        with np.errstate(invalid="ignore"):
-            half = np.sqrt(self.radius**2 - ((o - along * d) ** 2).sum(axis=0))
-        return -along - half, -along + half
-
-    def distance(self, points: Floats) -> Floats:
-        """Return how far points lie outside, shape (N,), metres."""
-        return np.linalg.norm(points - self.center, axis=1) - self.radius
-
-    def speeds(self, points: Floats) -> tuple[Floats, Floats]:
-        """Return the normals, shape (N, 3), and the speeds of the numbers, shape (N, 4)."""
-        x = points - self.center
-        normals = x / np.maximum(np.linalg.norm(x, axis=1), TINY)[:, None]
-        return normals, np.column_stack([normals, np.ones(len(normals))])
-
-    def moved(self, step: Floats) -> Sphere:
-        """Return the sphere after a step of its numbers, shape (4,)."""
-        return altered(self, center=self.center + step[:3], radius=self.radius + step[3])
-
-
-@dataclass(frozen=True, eq=False)
-class Cylinder:
-    """A cylinder with both its caps: the middle of its axis, the axis (either way), radius and height, metres."""
-
-    center: Floats
-    axis: Floats
-    radius: float
-    height: float
-    frame: Floats
-    kind: ClassVar[SolidKind] = "cylinder"
-    numbers: ClassVar[int] = 7
-
-    def __init__(self, center: ArrayLike, axis: ArrayLike, radius: float, height: float) -> None:
-        axis = as_direction(axis, "axis")
-        vars(self).update(center=as_point(center, "center", 3), axis=axis, radius=as_positive(radius, "radius"))
-        vars(self).update(height=as_positive(height, "height"), frame=frame_of(axis))
-
-    @property
-    def half(self) -> Floats:
-        """Half the extents in its own frame, shape (3,), metres."""
-        return np.array([self.radius, self.radius, self.height / 2])
-
-    def reach(self, direction: Floats) -> float:
-        """Return how far it goes from its middle along a unit vector, metres."""
-        x, y, z = self.frame @ direction
-        return float(self.height / 2 * abs(z) + self.radius * np.hypot(x, y))
+        return float(self._lengths((self.frame @ direction * self.half)[:, None]).sum())
 
     def chord(self, origins: ArrayLike, directions: ArrayLike) -> Chord:
         """Return the ranges at which beams enter and leave, metres; a beam that passes by leaves first, or is NaN."""
-        o, d = _local(self, origins, directions)
-        across = d[0] ** 2 + d[1] ** 2
+        o = self.frame @ np.atleast_2d(np.asarray(origins, dtype=float) - self.center).T
+        d, m, r = self.frame @ np.asarray(directions, dtype=float).T, self.ball, self.half[0]
+        enters, leaves = np.full((2, d.shape[1]), [[-np.inf], [np.inf]])
         with np.errstate(divide="ignore", invalid="ignore"):
-            along = -(o[0] * d[0] + o[1] * d[1]) / across
-            half = np.sqrt(self.radius**2 - (o[0] * d[1] - o[1] * d[0]) ** 2 / across) / np.sqrt(across)
-        straight = (across == 0) & (o[0] ** 2 + o[1] ** 2 <= self.radius**2)  # along the axis, within
-        enters, leaves = np.where(straight, -np.inf, along - half), np.where(straight, np.inf, along + half)
-        low, high = between(o[2], d[2], -self.height / 2, self.height / 2)
-        return np.maximum(enters, low), np.minimum(leaves, high)
+            if m:
+                across = (d[:m] ** 2).sum(axis=0)
+                along = -(o[:m] * d[:m]).sum(axis=0) / across
+                to_rim = np.sqrt((r**2 - ((o[:m] + along * d[:m]) ** 2).sum(axis=0)) / across)
+                straight = (across == 0) & ((o[:m] ** 2).sum(axis=0) <= r**2)  # along the axis, within
+                enters, leaves = np.where(straight, enters, along - to_rim), np.where(straight, leaves, along + to_rim)
+            for ok, dk, half in zip(o[m:], d[m:], self.half[m:], strict=True):
+                # Along a bound itself, 0 / 0 is NaN, and stands for always.
+                to_low, to_high = (-half - ok) / dk, (half - ok) / dk
+                enters = np.maximum(enters, np.fmax(np.minimum(to_low, to_high), -np.inf))
+                leaves = np.minimum(leaves, np.fmin(np.maximum(to_low, to_high), np.inf))
+        return enters, leaves
 
     def distance(self, points: Floats) -> Floats:
         """Return how far points lie outside the part that they are most outside of, shape (N,), metres."""
         return self._outside(self.frame @ (points - self.center).T).max(axis=0)
 
-    def _outside(self, x: Floats) -> Floats:
-        """Return how far points in its frame, shape (3, N), lie outside its side, its low and its high end."""
-        return np.array([np.hypot(x[0], x[1]) - self.radius, -x[2] - self.height / 2, x[2] - self.height / 2])
-
     def speeds(self, points: Floats) -> tuple[Floats, Floats]:
-        """Return the normals, shape (N, 3), and the speeds of the numbers, shape (N, 7)."""
-        x = self.frame @ (points - self.center).T
-        side, low, high = np.arange(3)[:, None] == self._outside(x).argmax(axis=0)
-        n = np.array([*x[:2] * (side / np.maximum(np.hypot(x[0], x[1]), TINY)), high * 1.0 - low])
-        tilts = n[:2] * x[2] - n[2] * x[:2]
-        return n.T @ self.frame, np.vstack([n[:2], tilts, side, -1.0 * low, high]).T
+        """Return the normals, shape (N, 3), and the speeds of the numbers, shape (N, numbers)."""
+        x, m = self.frame @ (points - self.center).T, self.ball
+        outside = self._outside(x)
+        own = np.arange(len(outside))[:, None] == outside.argmax(axis=0)  # the part whose surface is met
+        n = np.sign(x)
+        n[m:] *= own[m > 0 :]
+        if m:
+            n[:m] = x[:m] * (own[0] / np.maximum(self._lengths(x)[0], TINY))
+        turns = (x[[1, 2, 0]] * n[[2, 0, 1]] - x[[2, 0, 1]] * n[[1, 2, 0]])[: self.turns]
+        ball = np.vstack([n[:m], own[: m > 0]])
+        return n.T @ self.frame, np.vstack([turns, ball, np.minimum(n[m:], 0), np.maximum(n[m:], 0)]).T
 
-    def moved(self, step: Floats) -> Cylinder:
-        """Return the cylinder after a step of its numbers, shape (7,)."""
-        u, v, w = self.frame
-        center = self.center + step[0] * u + step[1] * v + (step[5] + step[6]) / 2 * w
-        axis = w + step[2] * u + step[3] * v
-        axis /= np.sqrt(axis @ axis)
-        height = self.height + step[6] - step[5]
-        return altered(
-            self, center=center, axis=axis, frame=frame_of(axis), radius=self.radius + step[4], height=height
-        )
+    def moved(self, step: Floats) -> Solid:
+        """Return the solid after a step of its numbers, shape (numbers,)."""
+        m, half, by = self.ball, self.half.copy(), np.zeros(3)
+        low, high = step[self.first_end :].reshape(2, -1)
+        half[:m] += step[self.first_end - 1]
+        half[m:] += (high - low) / 2
+        shift = np.append(step[self.turns : self.turns + m], (low + high) / 2)
+        by[: self.turns] = step[: self.turns]
+        frame = turn(by) @ self.frame if self.turns else self.frame
+        return altered(self, center=self.center + shift @ self.frame, frame=frame, half=half)
+
+    def _lengths(self, x: Floats) -> Floats:
+        """Return how long vectors in its frame, shape (3, N), are in the ball's axes, and in each interval's."""
+        m = self.ball
+        return np.vstack([np.sqrt((x[:m] ** 2).sum(axis=0)), np.abs(x[m:])]) if m else np.abs(x)
+
+    def _outside(self, x: Floats) -> Floats:
+        """Return how far points in its frame, shape (3, N), lie outside of each part."""
+        return self._lengths(x) - self.radii[:, None]
+
+    def __repr__(self) -> str:
+        made = ", ".join(f"{name}={np.round(getattr(self, name), 3).tolist()}" for name in self.given)
+        return f"{type(self).__name__}({made})"
 
 
-@dataclass(frozen=True, eq=False)
-class Box:
-    """A box: its centre, its three axes as the rows of ``frame``, and its size along each, metres."""
+class Sphere(Solid):
+    """A ball: its centre, shape (3,), and its radius, metres."""
 
-    center: Floats
-    frame: Floats
-    size: Floats
-    kind: ClassVar[SolidKind] = "box"
-    numbers: ClassVar[int] = 9
+    kind, given, called = "sphere", ("center", "radius"), ("radius",)
+    ball, turns, first_end, numbers = 3, 0, 4, 4
 
-    def __init__(self, center: ArrayLike, frame: ArrayLike, size: ArrayLike) -> None:
-        sides = [as_positive(side, "size") for side in as_point(size, "size", 3).tolist()]
-        vars(self).update(center=as_point(center, "center", 3), frame=_as_frame(frame), size=np.array(sides))
+    def __init__(self, center: ArrayLike, radius: float) -> None:
+        super().__init__(as_point(center, "center", 3), np.eye(3), np.full(3, as_positive(radius, "radius")))
 
     @property
-    def half(self) -> Floats:
-        """Half the extents in its own frame, shape (3,), metres."""
-        return self.size / 2
-
-    def reach(self, direction: Floats) -> float:
-        """Return how far it goes from its centre along a unit vector, metres."""
-        return float(np.abs(self.frame @ direction) @ self.half)
-
-    def chord(self, origins: ArrayLike, directions: ArrayLike) -> Chord:
-        """Return the ranges at which beams enter and leave, metres; a beam that passes by leaves first."""
-        o, d = _local(self, origins, directions)
-        low, high = between(o, d, -self.half[:, None], self.half[:, None])
-        return low.max(axis=0), high.min(axis=0)
-
-    def distance(self, points: Floats) -> Floats:
-        """Return how far points lie outside the face that they are most outside of, shape (N,), metres."""
-        return (np.abs(self.frame @ (points - self.center).T) - self.half[:, None]).max(axis=0)
-
-    def speeds(self, points: Floats) -> tuple[Floats, Floats]:
-        """Return the normals, shape (N, 3), and the speeds of the numbers, shape (N, 9)."""
-        x = self.frame @ (points - self.center).T
-        n = np.sign(x) * (np.arange(3)[:, None] == (np.abs(x) - self.half[:, None]).argmax(axis=0))
-        turns = x[[1, 2, 0]] * n[[2, 0, 1]] - x[[2, 0, 1]] * n[[1, 2, 0]]
-        return n.T @ self.frame, np.vstack([turns, np.minimum(n, 0), np.maximum(n, 0)]).T
-
-    def moved(self, step: Floats) -> Box:
-        """Return the box after a step of its numbers, shape (9,)."""
-        low, high = step[3:6], step[6:9]
-        center = self.center + (low + high) / 2 @ self.frame
-        return altered(self, center=center, frame=turn(step[:3]) @ self.frame, size=self.size + high - low)
+    def radius(self) -> float:
+        """Its radius, metres."""
+        return float(self.half[0])
 
 
-Solid = Sphere | Cylinder | Box
-S = TypeVar("S", bound=Solid)
+class Cylinder(Solid):
+    """A cylinder with both its caps: the middle of its axis, the axis (either way), radius and height, metres."""
+
+    kind, given, called = "cylinder", ("center", "axis", "radius", "height"), ("radius", "height")
+    ball, turns, first_end, numbers = 2, 2, 5, 7
+
+    def __init__(self, center: ArrayLike, axis: ArrayLike, radius: float, height: float) -> None:
+        radius, height = as_positive(radius, "radius"), as_positive(height, "height")
+        half = np.array([radius, radius, height / 2])
+        super().__init__(as_point(center, "center", 3), frame_of(as_direction(axis, "axis")), half)
+
+    @property
+    def axis(self) -> Floats:
+        """The unit vector along its axis, shape (3,)."""
+        return self.frame[2]
+
+    @property
+    def radius(self) -> float:
+        """Its radius, metres."""
+        return float(self.half[0])
+
+    @property
+    def height(self) -> float:
+        """From cap to cap, metres."""
+        return float(2 * self.half[2])
 
 
-def altered(solid: S, **numbers: Floats | float) -> S:
+class Box(Solid):
+    """A box: its centre, its three axes as the rows of ``frame``, and its size along each, metres."""
+
+    kind, given, called = "box", ("center", "frame", "size"), ("length", "width", "height")
+    ball, turns, first_end, numbers = 0, 3, 3, 9
+
+    def __init__(self, center: ArrayLike, frame: ArrayLike, size: ArrayLike) -> None:
+        rows = as_floats(frame, "frame", "(3, 3)")
+        if rows.shape != (3, 3) or not np.abs(rows @ rows.T - np.eye(3)).max() <= UNIT:
+            raise ValueError(f"frame must be three unit vectors at right angles, got {rows.tolist()}")
+        sides = [as_positive(side, "size") for side in as_point(size, "size", 3).tolist()]
+        super().__init__(as_point(center, "center", 3), rows, np.array(sides) / 2)
+
+    @property
+    def size(self) -> Floats:
+        """Its extents along the rows of ``frame``, shape (3,), metres."""
+        return 2 * self.half
+
+
+def altered(solid: Solid, **numbers: Floats) -> Solid:
     """Return the solid with other numbers. They are not checked: who takes a step sees how far it leads."""
     other = copy(solid)
     vars(other).update(numbers)
@@ -246,14 +250,6 @@ def first_of(enters: Floats, leaves: Floats) -> Floats:
         return np.where((enters <= leaves) & (leaves > 0), np.where(enters > 0, enters, leaves), np.inf)
 
 
-def between(o: Floats, d: Floats, low: Floats | float, high: Floats | float) -> Chord:
-    """Return when o + t d comes to lie between two bounds, and when it ceases to."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        to_low, to_high = (low - o) / d, (high - o) / d
-    # Along a bound itself, 0 / 0 is NaN, and stands for always.
-    return np.fmax(np.minimum(to_low, to_high), -np.inf), np.fmin(np.maximum(to_low, to_high), np.inf)
-
-
 def frame_of(axis: Floats) -> Floats:
     """Return a frame, its rows unit vectors, whose third row is this axis.
 
@@ -263,8 +259,7 @@ def frame_of(axis: Floats) -> Floats:
     x, y, z = axis
     u = np.array([0.0, z, -y] if abs(x) < 0.6 else [-z, 0.0, x])
     u /= np.sqrt(u @ u)
-    (a, b, c) = u
-    return np.array([u, [y * c - z * b, z * a - x * c, x * b - y * a], axis])
+    return np.array([u, np.cross(axis, u), axis])
 
 
 def turn(by: Floats) -> Floats:
@@ -289,17 +284,4 @@ def as_direction(direction: ArrayLike, name: str) -> Floats:
     length = float(np.linalg.norm(vector))
     if length == 0:
         raise ValueError(f"{name} must be longer than 0, got {vector.tolist()}")
-    return vector / length
-
-
-def _as_frame(frame: ArrayLike) -> Floats:
-    rows = as_floats(frame, "frame", "(3, 3)")
-    if rows.shape != (3, 3) or not np.abs(rows @ rows.T - np.eye(3)).max() <= UNIT:
-        raise ValueError(f"frame must be three unit vectors at right angles, got {rows.tolist()}")
-    return rows
-
-
-def _local(solid: Solid, origins: ArrayLike, directions: ArrayLike) -> tuple[Floats, Floats]:
-    """Return beams in the solid's own frame, an axis a row: shape (3, N), or (3, 1) of a single origin, and (3, N)."""
-    o = np.atleast_2d(np.asarray(origins, dtype=float) - solid.center)
-    return solid.frame @ o.T, solid.frame @ np.asarray(directions, dtype=float).T
+    return vector if abs(length - 1) < ROUNDING else vector / length  # so that what was written is read back

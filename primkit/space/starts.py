@@ -15,11 +15,13 @@ Out: a sphere, a cylinder, a box, as far as the points let one be fitted.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ..arguments import Floats
 from ..ransac import run_ransac
-from .along_beam import ROUNDS, SOFT, belongs, stepped
+from .along_beam import SOFT, stepped
 from .consensus import PLANE, SPHERE, cylinders_along
 from .solids import Box, Cylinder, Solid, Sphere, frame_of, turn
 
@@ -27,7 +29,7 @@ ENOUGH, ROUNDS_EACH = 150, 2  # points for a start; rounds for each reach
 REACHES = (0.06, 0.025, 0.01)  # m, and not below twice the noise: what is near, round by round
 TRIALS, AXES, TURNS_TRIED = 60, 80, 20  # samples; directions all round; steps of a quarter turn
 PLANES, LEAST_BESIDE, WIDEST = 2, 10, 5.0  # looked for; points beside one that may be an end; m, of a radius
-BEST_AXES, BEST_TURNS = 3, 2  # that are drawn to the points
+MOST_PROMISING = 2  # are drawn to the points
 QUARTER_TURNS = np.array([turn(np.array([0, 0, a])) for a in np.arange(TURNS_TRIED) * np.pi / 2 / TURNS_TRIED])
 OUTERMOST = 2.0  # percent of the points at each end that a first size does not count
 
@@ -51,28 +53,11 @@ def drawn(solid: Solid, points: Floats, noise_std: float) -> Solid:
     for reach in REACHES:
         for _ in range(ROUNDS_EACH):
             w = 1 / (1 + (solid.distance(points) / max(reach, 2 * noise_std)) ** 2) ** 2
-            solid = _nearer(solid, points, w, noise_std)
+            solid = nearer(solid, points, w, noise_std)
     return solid
 
 
-def settled(solid: Solid, points: Floats, noise_std: float) -> Solid:
-    """Return the solid of maximum likelihood near this one, of points that err at right angles to its surface.
-
-    For points whose beams nobody knows; where they are known, ``along_beam.refine`` knows more.
-
-    Parameters
-    ----------
-    solid : Sphere, Cylinder or Box, such as a consensus of RANSAC
-    points : array, shape (N, 3), metres
-    noise_std : float, metres
-    """
-    solid = drawn(solid, points, noise_std)
-    for _ in range(ROUNDS):
-        solid = _nearer(solid, points, belongs(solid.distance(points), noise_std), noise_std)
-    return solid
-
-
-def _nearer(solid: Solid, points: Floats, weights: Floats, noise_std: float) -> Solid:
+def nearer(solid: Solid, points: Floats, weights: Floats, noise_std: float) -> Solid:
     """Return the solid after one step of weighted least squares; itself when nothing would be left of it."""
     speeds = solid.speeds(points)[1]
     pulls = speeds.T * weights / noise_std**2
@@ -98,33 +83,34 @@ def _cylinder(points: Floats, planes: list[tuple[Floats, Floats]], noise_std: fl
     tubes = cylinders_along(np.broadcast_to(points, (len(axes), *points.shape)), axes)
     across = [cylinders_along(beside[None], n[None]) for n, beside in planes if len(beside) >= LEAST_BESIDE]
     tubes = np.vstack([tubes, *across])
-    tubes = tubes[np.isfinite(tubes).all(axis=1) & (np.nan_to_num(tubes[:, 6], nan=np.inf) < WIDEST)]
-    if len(tubes) == 0:
+    c, w, r = np.split(tubes[np.isfinite(tubes).all(axis=1) & (tubes[:, 6] < WIDEST)], [3, 6], axis=1)
+    if len(c) == 0:
         return None
-    offsets = points - tubes[:, None, :3]
-    along = (offsets * tubes[:, None, 3:6]).sum(axis=2)
+    offsets = points - c[:, None]
+    along = (offsets * w[:, None]).sum(axis=2)
     low, high = np.percentile(along, [OUTERMOST, 100 - OUTERMOST], axis=1)[:, :, None]
-    off = np.sqrt(np.maximum((offsets**2).sum(axis=2) - along**2, 0)) - tubes[:, 6:]
+    off = np.sqrt(np.maximum((offsets**2).sum(axis=2) - along**2, 0)) - r
     off = np.maximum(off, np.maximum(low - along, along - high))
-    best = np.argsort((np.minimum(np.abs(off), REACHES[0]) ** 2).mean(axis=1))[:BEST_AXES]
-    begun = []
-    for tube, a, b in zip(tubes[best], low[best, 0], high[best, 0], strict=True):
-        begin = Cylinder(tube[:3] + (a + b) / 2 * tube[3:6], tube[3:6], tube[6], max(b - a, noise_std))
-        begun.append(drawn(begin, points, noise_std))
-    return min(begun, key=lambda solid: misfit(solid, points, REACHES[-1]))
+    middle, height = c + (low + high) / 2 * w, np.maximum(high - low, noise_std)
+    return _best(lambda k: Cylinder(middle[k], w[k], float(r[k, 0]), float(height[k, 0])), off, points, noise_std)
 
 
 def _box(points: Floats, planes: list[tuple[Floats, Floats]], noise_std: float) -> Solid:
     """Return the box that points lie nearest to, of those that turn about the normals of planes."""
-    normals = [n for n, _ in planes]
-    frames = np.concatenate([QUARTER_TURNS @ frame_of(n) for n in normals])
+    frames = np.concatenate([QUARTER_TURNS @ frame_of(n) for n, _ in planes])
+    upright_last = np.argsort(np.abs(frames[:, :, 2]), axis=1, kind="stable")  # so that height is what all call so
+    frames = np.take_along_axis(frames, upright_last[:, :, None], axis=1)
     x = points @ np.swapaxes(frames, 1, 2)
     low, high = np.percentile(x, [OUTERMOST, 100 - OUTERMOST], axis=1)
-    off = np.abs(np.maximum(low[:, None] - x, x - high[:, None]).max(axis=2))
-    best = np.argsort((np.minimum(off, REACHES[0]) ** 2).mean(axis=1))[:BEST_TURNS]
-    boxes = [Box((low[k] + high[k]) / 2 @ (f := frames[k]), f, np.maximum(high[k] - low[k], noise_std)) for k in best]
-    begun = [drawn(box, points, noise_std) for box in boxes]
-    return min(begun, key=lambda solid: misfit(solid, points, REACHES[-1]))
+    off = np.maximum(low[:, None] - x, x - high[:, None]).max(axis=2)
+    size = np.maximum(high - low, noise_std)
+    return _best(lambda k: Box((low[k] + high[k]) / 2 @ frames[k], frames[k], size[k]), off, points, noise_std)
+
+
+def _best(begun: Callable[[int], Solid], off: Floats, points: Floats, noise_std: float) -> Solid:
+    """Draw the most promising solids to the points, by how far these lie off each, (K, N); return the nearest."""
+    promising = np.argsort((np.minimum(np.abs(off), REACHES[0]) ** 2).mean(axis=1))[:MOST_PROMISING].tolist()
+    return min((drawn(begun(k), points, noise_std) for k in promising), key=lambda s: misfit(s, points, REACHES[-1]))
 
 
 def directions_all_round(n: int) -> Floats:

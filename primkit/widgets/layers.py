@@ -117,7 +117,7 @@ def draw_slices() -> Picture:
         frame.segments([ball], [ends[0]], ORANGE, 2),
         frame.segments([ball], [lows[0]], INK, 1.5),
         frame.points([ball], INK, size=7),
-        frame.text(0.5 * (ball + ends[0]), "R", ORANGE, shift=(8, 0), size=16),
+        frame.text(ball + 0.25 * (ends[0] - ball), "R", ORANGE, shift=(8, 0), size=16),
         frame.text((0, 0.2), "h - c", INK, "end", (-6, -8), 15),
         frame.text((0, BALL_RADIUS), "c", INK, "end", (-8, 0), 15),
         frame.text((0.1, heights[0]), "r", VERMILION, shift=(0, 18), size=16),

@@ -14,14 +14,14 @@ import numpy as np
 from primkit import space
 from primkit.ransac import draw_samples
 from primkit.space.points_alone import solid_through
-from primkit.space.solids import hit
+from primkit.space.solids import altered, hit
 
 NEAR_EDGE = 1e-7  # m, rad: a ray that a solid so much larger or smaller answers otherwise passes at its edge
 
 
 def differing_rays(n_scenes=50, rays=20_000, seed=0):
-    """Cast rays from random places in random directions; return the worst difference of range where both hit, metres,
-    how many hit in one and miss in the other away from edges, and how many were cast."""
+    """Cast rays from random places in random directions; return the worst difference of range where both hit the same,
+    metres, how many hit something else away from edges, and how many were cast."""
     import mujoco
 
     worst, differing, cast = 0.0, 0, 0
@@ -32,18 +32,15 @@ def differing_rays(n_scenes=50, rays=20_000, seed=0):
         towards = np.array([scene.solids[i].center for i in rng.integers(0, 5, rays)]) + rng.normal(0, 0.3, (rays, 3))
         origin = np.array([*rng.uniform(-4, 4, 2), rng.uniform(1.5, 3)])
         ways = (towards - origin) / np.linalg.norm(towards - origin, axis=1)[:, None]
-        ours, _ = scene.hit(origin, ways)
-        theirs, geom = np.empty(rays), np.empty((1, 1), dtype=np.int32)
+        ours, what = scene.hit(origin, ways)
+        theirs, geoms, geom = np.empty(rays), np.empty(rays, dtype=int), np.empty((1, 1), dtype=np.int32)
         for i, way in enumerate(ways):
             theirs[i] = mujoco.mj_ray(model, data, origin, way, None, 1, -1, geom, None)
-        theirs = np.where(theirs < 0, np.inf, theirs)
-        both = np.isfinite(ours) & np.isfinite(theirs)
-        off = np.where(both, np.abs(np.where(both, ours, 0) - np.where(both, theirs, 0)), 0)
-        odd = np.flatnonzero((np.isfinite(ours) != np.isfinite(theirs)) | (off > 1e-6))
-        at_edge = np.array([near_edge(scene, origin, ways[i : i + 1]) for i in odd], dtype=bool)
-        differing += np.count_nonzero(~at_edge)
-        off[odd] = 0
-        worst, cast = max(worst, off.max()), cast + rays
+            geoms[i] = geom[0, 0] - 1  # the ground is their first, and stands before our solids
+        same = what == geoms
+        differing += sum(not near_edge(scene, origin, ways[i : i + 1]) for i in np.flatnonzero(~same))
+        worst = max(worst, np.abs(ours - theirs)[same & np.isfinite(ours)].max())
+        cast += rays
     return worst, differing, cast
 
 
@@ -51,9 +48,8 @@ def near_edge(scene, origin, way):
     """Tell whether a ray passes so close to an edge that rounding may decide."""
     for solid in scene.solids:
         for sign in (-1, 1):
-            step = np.zeros(solid.numbers)
-            step[{"sphere": 3, "cylinder": 4, "box": 6}[solid.kind] :] = sign * NEAR_EDGE
-            if np.isfinite(hit(solid.moved(step), origin, way)) != np.isfinite(hit(solid, origin, way)):
+            other = altered(solid, half=solid.half + sign * NEAR_EDGE)
+            if np.isfinite(hit(other, origin, way)) != np.isfinite(hit(solid, origin, way)):
                 return True
     return False
 
@@ -75,10 +71,10 @@ def in_mujoco(mujoco, scene):
 
 def rays():
     worst, differing, cast = differing_rays()
-    print(f"{cast:,} rays: worst difference {1e3 * worst:.1e} mm; hit or miss differs away from edges: {differing}")
+    print(f"{cast:,} rays: worst difference {1e3 * worst:.1e} mm; what is hit differs away from edges: {differing}")
 
 
-SUCCESSES, MOST_DRAWN = 2000, 400_000  # first successes whose 99 % quantile is taken; trials drawn at most
+ENOUGH_RIGHT, LEAST_RIGHT, MOST_SECONDS = 12_000, 400, 30  # trials that succeed; fewer tell nothing; s for a cell
 OFF, STEEP, ON_IT, MOST_OF = 0.1, 0.1, 0.015, 0.8  # of the size; rad; m; share: what counts as found
 
 
@@ -114,35 +110,48 @@ def right(kind, model, params, true, own):
 
 
 def trials():
+    """For 99 %: half of the trials measure the chance, the other half how many it took, from success to success."""
     print("kind      share  sample   chance a trial  formula  took (99 %)  ratio  ms a 1,000 trials  formula of w^m")
     for kind, model in (("plane", space.PLANE), ("sphere", space.SPHERE), ("cylinder", space.CYLINDER)):
         for share in (0.7, 0.3):
             rng = np.random.default_rng(0)
             own, true = patch(kind, 600, rng)
-            strays = rng.uniform(-1, 1, (round(600 / share) - 600, 3))
-            points = np.vstack([own, strays])
+            points = np.vstack([own, rng.uniform(-1, 1, (round(600 / share) - 600, 3))])
             for k in (None, 10, 30, 100):
                 way = model if k is None else space.with_nearest(points, model, k)
-                found, began = np.zeros(0, dtype=bool), time.process_time()
-                while len(found) < MOST_DRAWN and found.sum() < SUCCESSES:
-                    samples = draw_samples(len(points), way.sample_size, 4000, rng)
-                    params = way.from_samples(points[samples])
-                    found = np.append(found, right(kind, model, params, true, own))
-                spent = 1e6 * (time.process_time() - began) / len(found)
-                name = "plain" if k is None else f"1 + {k}"
-                clean = np.log(0.01) / np.log1p(-(share ** (model.sample_size if k is None else 1)))
-                if found.sum() < 100:
-                    print(
-                        f"{kind:9s} {share:.1f}    {name:8s} {found.sum()} right of {len(found):,} trials; {clean:,.0f}"
-                    )
+                found, began, spent = [], time.process_time(), 0.0
+                while sum(map(np.count_nonzero, found)) < ENOUGH_RIGHT and spent < MOST_SECONDS:
+                    params = way.from_samples(points[draw_samples(len(points), way.sample_size, 4000, rng)])
+                    found.append(right(kind, model, params, true, own))
+                    spent = time.process_time() - began
+                one, other = np.array_split(np.concatenate(found), 2)
+                n, chance = len(one) + len(other), one.mean()
+                clean = share ** (model.sample_size if k is None else 1)
+                row = f"{kind:9s} {share:.1f}    {'plain' if k is None else f'1 + {k}':8s}"
+                if one.sum() + other.sum() < LEAST_RIGHT:
+                    right_ones = one.sum() + other.sum()
+                    print(f"{row} capped: {right_ones} right of {n:,} trials, {1e6 * spent / n:.0f} ms a 1,000")
                     continue
-                one, other = np.array_split(found, 2)  # the chance from one half, what it took from the other
-                took = np.quantile(np.diff(np.flatnonzero(other), prepend=-1), 0.99)
-                formula = np.log(0.01) / np.log1p(-min(one.mean(), 1 - 1e-9))
+                formula, took = for_99(chance), in_99(np.diff(np.flatnonzero(other), prepend=-1))
                 print(
-                    f"{kind:9s} {share:.1f}    {name:8s} {one.mean():13.5f} {formula:8.0f} {took:12.0f} "
-                    f"{took / formula:6.2f} {spent:18.0f} {clean:15,.0f}"
+                    f"{row} {chance:13.5f} {formula:8.1f} {took:12.1f} {took / formula:6.2f} "
+                    f"{1e6 * spent / n:18.0f} {for_99(clean):15,.1f}"
                 )
+
+
+def for_99(chance):
+    """Trials until one succeeds in 99 of 100 runs, by the formula, with a chance a trial."""
+    return np.log(0.01) / np.log1p(-chance)
+
+
+def in_99(took):
+    """Trials until the share of runs that are not done yet has fallen to 1 %, between whole numbers as the formula."""
+    left = np.append(1.0, 1 - np.cumsum(np.bincount(took)[1:]) / len(took))
+    k = int(np.argmax(left <= 0.01))
+    if left[k] == 0:
+        return float(k)
+    a, b = np.log(left[k - 1 : k + 1])
+    return k - 1 + (np.log(0.01) - a) / (b - a)
 
 
 def quarters(n=1000, noise=0.01):
