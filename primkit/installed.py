@@ -27,6 +27,20 @@ PROJECT = Path(__file__).resolve().parents[1]  # in a clone, the project's folde
 CLASSROOM = PROJECT / "environment.txt"
 PIN = re.compile(r"^([\w.-]+)(?:\[[\w,]+\])?==([\w.]+)")
 FLOOR = re.compile(r"^([\w.-]+)>=([\w.]+)$")
+IN_BROWSER = sys.platform == "emscripten"
+
+
+def quoted(file: str | Path) -> str:
+    """Return a path as one word of a command line.
+
+    >>> quoted("my lessons/a.ipynb"), quoted("lessons/a.ipynb")
+    ('"my lessons/a.ipynb"', 'lessons/a.ipynb')
+    """
+    return f'"{file}"' if " " in str(file) else str(file)
+
+
+# What installs into this very Python: a line for a terminal, or, in a browser, for a cell.
+PIP = "%pip" if IN_BROWSER else f"{quoted(sys.executable)} -m pip"
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,7 @@
 """`primkit doctor`: it names each fault and how it is mended, also where nearly nothing is installed."""
 
 import os
+import runpy
 import shutil
 import subprocess
 import sys
@@ -108,6 +109,21 @@ def test_a_fault_is_named_with_its_remedy(damage, fault, mend, here, monkeypatch
     assert fault in lines[place]
     assert mend in lines[place + 1]
     assert lines[-1] == "1 fault found"
+
+
+@pytest.mark.parametrize(
+    ("platform", "program", "line"),
+    [
+        ("linux", "/opt/a/python", "/opt/a/python -m pip"),
+        ("linux", "/my env/python", '"/my env/python" -m pip'),
+        ("emscripten", "", "%pip"),
+    ],
+    ids=["in a terminal", "a space in the path", "in a browser's cell"],
+)
+def test_what_is_to_be_pasted_can_be(platform, program, line, monkeypatch):
+    monkeypatch.setattr(sys, "platform", platform)
+    monkeypatch.setattr(sys, "executable", program)
+    assert runpy.run_path(installed.__file__)["PIP"] == line
 
 
 def test_it_answers_where_nothing_is_installed(here):

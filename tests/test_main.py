@@ -163,7 +163,7 @@ def test_a_package_that_is_not_installed_is_named(capsys):
     """Such as nbgrader, which students' environments do not have."""
     assert exit_code(lambda: __import__("no_such_package")) == 2
     told = capsys.readouterr().err
-    assert told.startswith("primkit: no_such_package is not installed; primkit doctor looks further, and for")
+    assert told.startswith("primkit: no_such_package is not installed: run primkit doctor; ")
     assert told.endswith('-m pip install "primkit-lab[teach]"\n')
     with pytest.raises(ModuleNotFoundError, match=r"primkit\.nowhere"):  # ours: an error in the kit itself
         exit_code(lambda: __import__("primkit.nowhere"))

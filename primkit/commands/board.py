@@ -11,9 +11,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from ..installed import quoted
 from ..table import count
 from .recording import LIDARS, lidar_named, map_recording, span
-from .words import Parser, millimetres, path, quoted, say, share, whole
+from .words import Parser, millimetres, path, say, share, whole
 
 if TYPE_CHECKING:
     from ..lidar import Lidar

@@ -14,7 +14,7 @@ from importlib import metadata
 from pathlib import Path
 from pydoc import ErrorDuringImport, locate
 
-from ..installed import CLASSROOM, PROJECT, Finding, kernel, needed_packages, older, python, version_of
+from ..installed import CLASSROOM, IN_BROWSER, PIP, PROJECT, Finding, kernel, needed_packages, older, python, version_of
 from .words import Parser, say, tell_faults
 
 DOCTOR_TEXT = "look at what is installed, try it, and say what to do about what is missing"
@@ -28,7 +28,6 @@ ONLY_FOR = {
     "nbgrader": "teachers: the problem sets",
 }
 LONGEST_PATH = 90  # letters, on Windows: files lie up to 170 letters deep in an environment, and a path ends at 260
-IN_BROWSER = sys.platform == "emscripten"
 
 
 def doctor_options(_parser: Parser) -> None:
@@ -54,16 +53,16 @@ def version_of_primkit() -> str:
 
 def _packages() -> Iterator[Finding]:
     """Load each package that primkit needs: one that is installed may still be broken."""
-    one_by_one = f"{sys.executable} -m pip install --upgrade"
+    one_by_one = f"{PIP} install --upgrade"
     for name, least in needed_packages():
         version = version_of(name) or "missing"
-        mend = f"{sys.executable} -m pip install -r {CLASSROOM}" if CLASSROOM.is_file() else f"{one_by_one} {name}"
+        mend = f"{PIP} install -r {CLASSROOM}" if CLASSROOM.is_file() else f"{one_by_one} {name}"
         if version != "missing" and not older(version, least):
             try:
                 loads = locate(IMPORTED_AS.get(name, name)) is not None
             except ErrorDuringImport as error:
                 version, loads = f"{version} cannot be loaded ({error.value})", False
-                mend = f"{sys.executable} -m pip install --force-reinstall {name}"
+                mend = f"{PIP} install --force-reinstall {name}"
             yield Finding(name, version, mend, loads)
         else:
             yield Finding(name, f"{version}, needs {least} or newer", mend)
@@ -81,7 +80,7 @@ def _namesakes() -> Iterator[Finding]:
     except metadata.PackageNotFoundError:
         return
     if author != "The primkit authors":
-        mend = f"{sys.executable} -m pip uninstall primkit, then install this one again as README.md says"
+        mend = f"{PIP} uninstall primkit, then install this one again as README.md says"
         yield Finding("primkit", "somebody else's package of this name is installed beside this one", mend)
 
 
@@ -97,7 +96,7 @@ def _place() -> Finding:
 def _jupyter() -> Iterator[Finding]:
     """Look for a Jupyter, and for what it shows sliders with."""
     server = next((name for name in ("jupyterlab", "notebook") if version_of(name)), None)
-    mend = f"{sys.executable} -m pip install jupyterlab (not needed in VS Code and Colab, which have their own)"
+    mend = f"{PIP} install jupyterlab (not needed in VS Code and Colab, which have their own)"
     yield Finding("Jupyter", f"{server} {version_of(server)}" if server else "missing", mend, server is not None)
     if server is None:
         return
@@ -106,7 +105,7 @@ def _jupyter() -> Iterator[Finding]:
     folders = [Path(folder) for folder in jupyter_path("labextensions")]
     for extension, package in FRONT_ENDS.items():
         there = next((folder for folder in folders if (folder / extension / "package.json").is_file()), None)
-        mend = f"{sys.executable} -m pip install --force-reinstall {package}, then restart Jupyter"
+        mend = f"{PIP} install --force-reinstall {package}, then restart Jupyter"
         yield Finding("sliders", f"{extension} {'is there' if there else 'is missing in Lab'}", mend, there is not None)
 
 

@@ -11,9 +11,9 @@ import argparse
 import shutil
 from pathlib import Path
 
-from ..installed import PROJECT
+from ..installed import PROJECT, quoted
 from ..table import count
-from .words import Parser, path, quoted, say
+from .words import Parser, path, say
 
 LESSONS_TEXT = "write the lessons into a folder"
 LESSONS_EXAMPLES = "A lesson that is there already stays as it is.\n"
@@ -26,14 +26,14 @@ def lessons_options(parser: Parser) -> None:
 
 def write_lessons(arguments: argparse.Namespace) -> None:
     """Copy each lesson that is not in the folder yet."""
-    from ..study import make_folder
-
     places = Path(__file__).parents[1] / "lessons", PROJECT / "notebooks"  # in a wheel; in the project's folder
     notebooks = [file for place in places for file in sorted(place.glob("[0-9]*.ipynb"))]
     if not notebooks:
         raise ValueError(f"there are no lessons in {' or '.join(map(str, places))}: install the package again")
-    for folder in (arguments.folder, arguments.folder / "recordings"):
-        make_folder(folder)
+    try:
+        (arguments.folder / "recordings").mkdir(parents=True, exist_ok=True)
+    except (FileExistsError, NotADirectoryError):
+        raise ValueError(f"{arguments.folder} must be a folder, got a file or a folder below a file") from None
     new = [file for file in notebooks if not (arguments.folder / file.name).exists()]
     for file in new:
         shutil.copyfile(file, arguments.folder / file.name)

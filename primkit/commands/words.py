@@ -19,7 +19,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn
 
-from ..installed import DISTRIBUTION, Finding
+from ..installed import DISTRIBUTION, PIP, Finding
 from ..table import count
 
 # What the library's sentences call differently.
@@ -116,11 +116,6 @@ def say(text: str) -> None:
     print(text.encode(encoding, "backslashreplace").decode(encoding))
 
 
-def quoted(file: Path) -> str:
-    """Return a path as a word of a command line, on any system."""
-    return f'"{file}"' if " " in str(file) else str(file)
-
-
 def tell_faults(findings: Sequence[Finding]) -> None:
     """Print what was looked at, and how many faults there are; end with 1 if there is one."""
     for finding in findings:
@@ -161,8 +156,8 @@ def exit_code(run: Callable[[], None]) -> int:
     except ModuleNotFoundError as error:
         if (error.name or __name__).partition(".")[0] == __name__.partition(".")[0]:
             raise
-        teachers = f'{sys.executable} -m pip install "{DISTRIBUTION}[teach]"'
-        return _complain(f"{error.name} is not installed; primkit doctor looks further, and for teachers: {teachers}")
+        teachers = f'{PIP} install "{DISTRIBUTION}[teach]"'
+        return _complain(f"{error.name} is not installed: run primkit doctor; what teachers need comes with {teachers}")
     except OSError as error:
         # Sentences from formats stand alone; the system's own come in parts.
         return _complain(f"{error.filename}: {error.strerror}" if error.filename else str(error))

@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from ..installed import PROJECT, Finding, kernel, pins_in, python, version_of
+from ..installed import PIP, PROJECT, Finding, kernel, pins_in, python, version_of
 from ..table import count
 from .confining import UNPROTECTED, confined_by
 from .course import CAREFUL, COPIED_FOLDERS, SETTINGS, STUDENTS, Course
@@ -46,10 +46,10 @@ def _packages(environment: Path) -> Iterator[Finding]:
     """Compare what is installed with what environment.txt says, or only look whether it is there."""
     if environment.is_file():
         pins = pins_in(environment)
-        mend = f"{Path(sys.executable)} -m pip install -r {environment}"
+        mend = f"{PIP} install -r {environment}"
     else:
         pins = dict.fromkeys(REQUIRED_PACKAGES, "")  # by their own names: "primkit" is somebody else's on PyPI
-        mend = f"{Path(sys.executable)} -m pip install {' '.join(pins)}"
+        mend = f"{PIP} install {' '.join(pins)}"
     wrong = 0
     for name, wanted in pins.items():
         found = version_of(name) or "missing"
@@ -65,7 +65,7 @@ def _commands() -> Iterator[Finding]:
     """Look for alembic: nbgrader calls it by its name to make a gradebook."""
     scripts = Path(sysconfig.get_path("scripts"))
     found = next((scripts / name for name in ("alembic", "alembic.exe") if (scripts / name).exists()), None)
-    mend = f"{Path(sys.executable)} -m pip install --force-reinstall alembic"
+    mend = f"{PIP} install --force-reinstall alembic"
     yield Finding("alembic", str(found or f"not in {scripts}"), mend, bool(found))
 
 
