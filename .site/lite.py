@@ -5,7 +5,7 @@
 
 In:  the lessons, and the wheel of this folder.
 Out: a folder for any web server. The library comes with it; Python, NumPy and the others come from Pyodide's own server
-     when a reader opens it, which needs a network. Built here; never opened here, for want of that network.
+     when a reader opens it, which needs a network. Never tried with them, for want of that network.
 """
 
 import json
