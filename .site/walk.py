@@ -4,8 +4,9 @@
 
 In:  a folder of pages, and Chromium or Chrome.
 Out: a sentence for each fault: a request that leaves the folder, an error of a script, a page that is wider than its
-     window, a slider that does not move, a control without a name, a picture without words, a formula or an example
-     that stands there as typed, what the Tab key does not reach, show or leave, a search without results.
+     window, a table that is wider than its place, a slider that does not move, a control without a name, a picture
+     without words, a formula or an example that stands there as typed, what the Tab key does not reach, show or leave,
+     a search without results.
 """
 
 import shutil
@@ -29,6 +30,9 @@ NAMELESS = """() => [
 
 TYPED = r"""() => [...document.querySelectorAll("main :is(p, li, dt, td)")].map((one) => one.innerText)
   .filter((text) => /\$\$|\\(?:frac|sum|sqrt|theta|sigma|le)\b|^>>> /.test(text))"""
+
+CUT = """() => [...document.querySelectorAll("main .pst-scrollable-table-container")]
+  .filter((one) => one.scrollWidth > one.clientWidth + 1).map((one) => one.innerText.slice(0, 40))"""
 
 # What has the focus: what it is, and what is wrong with how it shows.
 FOCUSED = """() => {
@@ -88,6 +92,7 @@ def look_at(page, path, width):
     if (wide := page.evaluate("document.documentElement.scrollWidth")) > width:
         yield f"{wide} px wide in a window of {width} px"
     yield from (f"nameless: {one}" for one in page.evaluate(NAMELESS))
+    yield from (f"wider than its place: a table that begins with {one!r}" for one in page.evaluate(CUT))
     yield from (f"as typed: {one}" for one in page.evaluate(TYPED))
     yield from (f"asks for {url}" for url in asked if not url.startswith(("file:", "data:", "blob:")))
     yield from (f"script: {error}" for error in errors)
