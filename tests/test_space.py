@@ -124,7 +124,7 @@ def test_cylinders_and_planes_on_the_one_loop():
     angle, along = rng.uniform(0, 2 * np.pi, 400), rng.uniform(-0.5, 0.5, 400)
     tube = np.column_stack([0.3 * np.cos(angle), 0.3 * np.sin(angle), along])
     points = np.vstack([tube, rng.uniform(-1, 1, (100, 3))])
-    found = run_ransac(points, space.with_nearest(points, space.CYLINDER, 120), 0.01, trials=50, rng=0)
+    found = run_ransac(points, space.with_nearest(points, space.CYLINDER, 60), 0.01, trials=50, rng=0)
     assert abs(found.params[5]) > 0.999
     assert found.params[6] == pytest.approx(0.3, abs=0.01)
     floor = np.column_stack([rng.uniform(-1, 1, (200, 2)), np.full(200, 0.25)])
