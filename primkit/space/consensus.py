@@ -8,7 +8,7 @@ model     parameters                             points fix it
 ========  =====================================  ==============
 PLANE     normal (3), offset: normal . p         3
 SPHERE    centre (3), radius                     4
-CYLINDER  a point of the axis (3), axis (3),     9
+CYLINDER  a point of the axis (3), axis (3),     7
           radius; it goes on at both ends
 ========  =====================================  ==============
 
@@ -28,8 +28,7 @@ w^m; but a patch that is small against the noise says little about what it lies 
 Sources: Toth and Hajder (2019), "Robust fitting of geometric primitives on LiDAR data", of which only the abstract was
 at hand: that the others are the k nearest is how the first author's later code for spheres has it; nearest points for
 planes and cylinders are our reading. The algebraic sphere: Taubin (1991), "Estimation of planar curves, surfaces, and
-nonplanar space curves"; the axis as the direction that normals avoid: Chaperon and Goulette (2001), "Extracting
-cylinders in full 3D data using a random sampling method and the Gaussian image".
+nonplanar space curves"; bending: Hamann (1993), "Curvature approximation for triangulated surfaces".
 """
 
 from __future__ import annotations
@@ -100,20 +99,21 @@ def spheres_through(samples: Floats) -> Floats:
 def cylinders_through(samples: Floats) -> Floats:
     """Return a cylinder through each sample, (T, m, 3) -> (T, 7); NaN where points fix none.
 
-    The quadric ``x' A x + b . x = c`` that fits best knows the axis: along it A does nothing. Across it, an algebraic
-    circle goes through the points.
+    Over its plane a patch is bent: ``z = a (p^2 + z^2) / 2 + b p q + c (q^2 + z^2) / 2 + d p + e q + f`` by least
+    squares. The axis is the way along which it is bent least: right for a patch, not for a tube that is seen all round.
+    Across it, an algebraic circle goes through the points.
     """
-    middle = samples.mean(axis=1)
-    x = samples - middle[:, None]
-    scale = np.sqrt((x**2).sum(axis=2).mean(axis=1))
-    x = x / np.maximum(scale, np.finfo(float).tiny)[:, None, None]
-    u, v, w = np.moveaxis(x, 2, 0)
-    terms = np.stack([u * u, v * v, w * w, u * v, u * w, v * w, u, v, w, np.ones_like(u)], axis=2)
-    q = np.linalg.eigh(np.einsum("tmi,tmj->tij", terms, terms))[1][:, :, 0]
-    a = np.stack([2 * q[:, 0], q[:, 3], q[:, 4], q[:, 3], 2 * q[:, 1], q[:, 5], q[:, 4], q[:, 5], 2 * q[:, 2]], axis=1)
-    values, axes = np.linalg.eigh(a.reshape(-1, 3, 3))
-    least = np.abs(values).argmin(axis=1)
-    return cylinders_along(samples, np.take_along_axis(axes, least[:, None, None], axis=2)[:, :, 0])
+    x = samples - samples.mean(axis=1, keepdims=True)
+    axes = np.linalg.eigh(_products(x))[1]
+    z, p, q = np.moveaxis(x @ axes, 2, 0)
+    terms = np.stack([(p * p + z * z) / 2, p * q, (q * q + z * z) / 2, p, q, np.ones_like(p)], axis=2)
+    scale = np.maximum(np.linalg.norm(terms, axis=1, keepdims=True), np.finfo(float).tiny)
+    terms /= scale
+    known = _products(terms) + FLATTEST * np.eye(6)  # so that points in a row have an axis, and no cylinder
+    bent = np.linalg.solve(known, np.swapaxes(terms, 1, 2) @ z[:, :, None])[:, :, 0] / scale[:, 0]
+    values, ways = np.linalg.eigh(bent[:, [0, 1, 1, 2]].reshape(-1, 2, 2))
+    least = np.abs(values).argmin(axis=1)[:, None, None]
+    return cylinders_along(samples, (axes[:, :, 1:] @ np.take_along_axis(ways, least, axis=2))[:, :, 0])
 
 
 def cylinders_along(samples: Floats, axes: Floats) -> Floats:
@@ -160,4 +160,4 @@ def _squares(c: Floats, points: Floats) -> Floats:
 
 PLANE = Model(3, planes_through, _from_planes, lambda points: planes_through(points[None])[0], 3)
 SPHERE = Model(4, spheres_through, _from_spheres, lambda points: spheres_through(points[None])[0], 3)
-CYLINDER = Model(9, cylinders_through, _from_cylinders, lambda points: cylinders_through(points[None])[0], 3)
+CYLINDER = Model(7, cylinders_through, _from_cylinders, lambda points: cylinders_through(points[None])[0], 3)

@@ -32,7 +32,8 @@ class End:
     """By how much a solid should grow at one end: mean, standard deviation, and the interval that holds it, metres.
 
     ``slope``, shape (numbers,), is by how much it grows there, where the beams that tell of it pass, as each number
-    does: a turn moves an end far from the middle as well. ``unbounded``: no beam ends the interval.
+    does: a turn moves an end far from the middle as well. ``unbounded``: no beam ends the interval. ``below``: how far
+    it lies below the ground, which all numbers together must mend.
     """
 
     growth: float
@@ -40,6 +41,7 @@ class End:
     between: tuple[float, float]
     slope: Floats
     unbounded: bool = False
+    below: float = 0.0
 
 
 def growths(solid: Solid) -> dict[int, Floats]:
@@ -63,10 +65,8 @@ def end_of(solid: Solid, k: int, beams: Beams, ground: Plane | None) -> End:
     j = solid.ball + (k - solid.first_end) % (3 - solid.ball)  # the axis that the end lies across
     slope = growths(solid)[k]
     normal = slope[k] * solid.frame[j]
-    least, most, contact = -2 * solid.half[j] * MOST_LESS, FARTHEST_END, np.inf
-    if ground is not None:
-        contact = max(to_ground(solid, normal, ground), 0.0)
-        most = min(most, contact)
+    gap = np.inf if ground is None else to_ground(solid, normal, ground)
+    least, most = -2 * solid.half[j] * MOST_LESS, min(FARTHEST_END, max(gap, 0.0))
     first, last = solid.moved(FARTHEST_END * slope).chord(beams.origins, beams.directions)
     first = np.maximum(first, 0)
     last = np.minimum(last, np.where(beams.own, np.inf, beams.ranges - ON_IT * beams.noise_std))
@@ -101,9 +101,10 @@ def end_of(solid: Solid, k: int, beams: Beams, ground: Plane | None) -> End:
     value = log_likelihoods(steps)
     p = np.exp(value - value.max())
     inside = steps[p > np.exp(-UNLIKELY)].tolist()
-    if most == contact and inside[-1] == most and ground is not None:
-        slope = slope if -normal @ ground.normal > NEARLY_LEVEL else lowest_point(solid, -ground.normal)
-        return End(most, 0.0, (inside[0], most), slope)
+    if gap < FARTHEST_END and inside[-1] == most and ground is not None:
+        down = -float(normal @ ground.normal)
+        slope, below = (slope, -gap) if down > NEARLY_LEVEL else (lowest_point(solid, -ground.normal), -gap * down)
+        return End(most, 0.0, (inside[0], most), slope, below=max(below, 0.0))
     p /= p.sum()
     mean = float(p @ steps)
     std = float(np.sqrt(p @ (steps - mean) ** 2 + (steps[1] - steps[0]) ** 2 / 12))

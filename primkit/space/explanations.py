@@ -175,5 +175,5 @@ def told_by_ends(ends: dict[int, End], by_ranges: Floats) -> Told:
             believed = by_ranges[k] * end.growth**2 < UNLIKELY
             at = end.growth * (precision / more - 1) if believed else 0.0
             matrix += more * np.outer(end.slope, end.slope)
-            vector += more * at * end.slope
+            vector += more * (at - end.below) * end.slope
     return matrix, vector

@@ -108,7 +108,7 @@ class Look:
                     break
             else:
                 kept.append(part)
-        return kept
+        return kept if len(kept) == len(found) else self.joined(kept)  # what has grown may explain more
 
     def as_one(self, larger: FoundSolid, part: FoundSolid) -> FoundSolid | None:
         """Return two that were found as the one that explains both; None where two explain them better."""
