@@ -45,7 +45,7 @@ LEAST_SEEN_STRETCH = 0.008
 LEAST_SHARE = 0.4
 LEAST_OF_CIRCLE = 0.45
 CORNER_SPREADS = 4.0
-OWN_SPREADS, LEAST_OWN = 3.0, 2  # spreads and points: next to no two of a neighbour's points lie farther from its line
+LEAST_OWN = 2  # points: next to no two of a neighbour's lie farther from its line than noise brings them
 MOST_STD = 0.01  # m: what is not even known to a centimetre was not measured, but supposed
 AHEAD, LEAST_RISE, MOST_WIDER = 3.0, 0.6, 3.0  # deviations; share of the rise that should be; times
 STEP = 1e-6  # rad and m, and spreads: the derivatives' step, far above rounding and far below any curvature
@@ -140,8 +140,8 @@ def without_points(figure: Outlines, points: Floats, spread: float) -> NDArray[n
     Where points are sparse, those of its neighbours lie near a hidden side, too.
     """
     begin, end = figure.spans()
-    long = (end - begin)[0] >= (2 * OWN_SPREADS + 1) * spread
-    return np.asarray(long & (own_points(figure, points, spread, OWN_SPREADS).sum(axis=0) < LEAST_OWN))
+    long = (end - begin)[0] >= (2 * SIGMAS + 1) * spread
+    return np.asarray(long & (own_points(figure, points, spread, SIGMAS).sum(axis=0) < LEAST_OWN))
 
 
 def sides_seen(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bool_]:
