@@ -17,7 +17,7 @@ from ..arguments import Floats, Ints
 from ..circles import straightened
 from ..lines import Line
 from ..seen import REACH, seen_shares
-from ..shapes import KINDS, Circle, Polygon, Shape
+from ..shapes import KINDS, Circle, Shape
 from .candidates import candidates, explained_again
 from .deviations import Certainty, certainty, without_points
 from .evidence import CERTAIN, NEARLY_ALL, Candidate
@@ -107,14 +107,12 @@ class Choice:
 
     @cached_property
     def closed(self) -> bool:
-        """Whether the best explanation's outline was seen nearly all around."""
-        shape = self.shape
-        if shape is None:
+        """Whether each side of the best explanation's outline was seen nearly from end to end."""
+        if self.shape is None:
             return False
-        lengths = shape.sides if isinstance(shape, Polygon) else [shape.perimeter]
-        if np.average(self.ranked[0].seen, weights=lengths) >= NEARLY_ALL:  # by those points alone that lie on it
+        if min(self.ranked[0].seen) >= NEARLY_ALL:  # by those points alone that lie on it
             return True
-        return bool(np.average(seen_shares(shape, self.points), weights=lengths) >= NEARLY_ALL)
+        return min(seen_shares(self.shape, self.points)) >= NEARLY_ALL
 
     @property
     def lead(self) -> float:

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 BEAD_CELLS, BEAD_SPREADS = 3.0, 4.0  # neighbours this near are one bead of the path: then noise makes no detours
 MOST_BEADS = 300  # more are made larger: the tree's work goes with their number squared
 AT_AN_END = 0.2  # of the path: there a stray may be its end, and is left out where that closes the path
-CLOSED_GAP = 0.04  # m: nearer ends close an outline: nearly twice as far as neighbours are linked
+CLOSED_GAP = 0.06  # m: nearer ends close an outline: nearly three times as far as neighbours are linked
 PATH_KNOTS = 120  # cuts lie between two of so many places along the path
 PIECE_COST = 20.0  # about the price of a side's two numbers, see ``evidence.price``
 DEARER, TIMES_DEARER = 2.0, 4  # where pieces do not close, fewer are tried
@@ -111,29 +111,30 @@ def _pruned(points: Floats, outline: Outlines, spread: float, least: float) -> O
 
 
 def round_order(points: Floats, spread: float) -> Floats | None:
-    """Return the points in their order around an outline, counter-clockwise and without strays; None if it is open."""
-    near = in_company(points, spread)
-    ordered = _round_path(points, points[near], spread)
-    return _round_path(points, points, spread) if ordered is None and not near.all() else ordered
+    """Return the points in their order around an outline, counter-clockwise and without strays; None if it is open.
 
-
-def _round_path(points: Floats, reliable: Floats, spread: float) -> Floats | None:
-    """Return the points along the path through the reliable ones; None where its ends do not meet."""
-    path = path_through(reliable, spread)
-    if path is None:
+    Lone points may be strays, or of a side that few beams met: they are left out if the path closes better so.
+    """
+    near, size = in_company(points, spread), _bead_size(spread)
+    ways = [points[near], points][: 1 if near.all() else 2]
+    gap, path = min((_closed(path_through(kept, spread)) for kept in ways), key=lambda way: way[0])
+    if path is None or gap > CLOSED_GAP + size:
         return None
+    place, distance = _along(points, path)
+    close = distance <= size + SIGMAS * spread
+    ordered = points[close][np.argsort(place[close], kind="stable")]
+    x, y = ordered.T
+    return ordered if (x * np.roll(y, -1)).sum() > (np.roll(x, -1) * y).sum() else ordered[::-1]
+
+
+def _closed(path: Floats | None) -> tuple[float, Floats | None]:
+    """Return how near two places at the ends of a path come, metres, and the path between them."""
+    if path is None:
+        return np.inf, None
     n = max(1, int(AT_AN_END * len(path)))
     gaps = np.hypot(*np.moveaxis(path[:n, None] - path[None, -n:], 2, 0))
     first, last = np.unravel_index(int(gaps.argmin()), gaps.shape)
-    size = _bead_size(spread)
-    if gaps[first, last] > CLOSED_GAP + size:
-        return None
-    path = path[first : len(path) - n + int(last) + 1]
-    place, distance = _along(points, path)
-    near = distance <= size + SIGMAS * spread
-    ordered = points[near][np.argsort(place[near], kind="stable")]
-    x, y = ordered.T
-    return ordered if (x * np.roll(y, -1)).sum() > (np.roll(x, -1) * y).sum() else ordered[::-1]
+    return float(gaps[first, last]), path[first : len(path) - n + int(last) + 1]
 
 
 def path_through(points: Floats, spread: float) -> Floats | None:
@@ -211,7 +212,9 @@ def _outlines(points: Floats, spread: float, least: float) -> Iterator[Outlines]
 
 def _best_cut(points: Floats, spread: float, price: float, least: float) -> tuple[NDArray[np.intp], Floats]:
     """Return at which points the best pieces begin, shape (K,), and their sums, shape (6, K)."""
-    knots = np.arange(min(PATH_KNOTS, len(points)) + 1) * len(points) // min(PATH_KNOTS, len(points))
+    step = np.hypot(*(points - np.roll(points, 1, axis=0)).T)
+    place = np.append(0.0, np.cumsum(step / step.sum() + 1 / len(points)))  # few points tell of a long side, too
+    knots = np.unique(np.searchsorted(place, np.linspace(0.0, place[-1], PATH_KNOTS + 1)).clip(0, len(points)))
     moments = moments_between(points, knots)
     cost = np.where(long_enough(points, knots, least), squares_of(moments), np.inf) / spread**2 + price
     best, begin = np.append(0.0, np.full(len(cost), np.inf)), [0]  # best[j]: the least cost up to knot j
