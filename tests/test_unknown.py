@@ -54,7 +54,7 @@ def test_any_polygon_is_measured_corner_by_corner(name, noise):
         assert one.kind == thing.kind
         assert len(one.shape.vertices) == len(thing.vertices)
         assert farthest_corner(one.shape, thing) < (0.002 if noise == 0 else 0.012)
-        assert one.certain == (name != "T") or noise > 0  # two rectangles that touch look like a T
+        assert one.certain or name == "T" or noise > 0  # two rectangles that nearly touch may look like a T
         assert len(one.dimension_std) == len(one.shape.dimensions)
 
 

@@ -153,8 +153,7 @@ class Choice:
 
         It is ahead of all rivals, and of itself with bends; nearly all points lie on it, none deep inside; nearly all
         of it was seen, each side by points of its own, or, where only the four kinds can be there, three eighths of a
-        circle; it is so large that its kind can show, and no cut between two corners that bend inwards leaves two
-        shapes with names.
+        circle; it is so large that its kind can show, and it is not as well two shapes with names side by side.
         """
         best = self.ranked[0] if self.ranked else None
         if best is None or best.shape is None:
@@ -168,7 +167,7 @@ class Choice:
             and (min(best.seen) >= MOST_SEEN or self._round_enough(best))
             and not (isinstance(figure, Outlines) and without_points(figure, self.points, self.spread).any())
             and large >= LEAST_SIDE
-            and not (isinstance(figure, Outlines) and figure.of_two)
+            and not (isinstance(figure, Outlines) and figure.of_two(self.points, self.spread))
             and self.margin >= CERTAIN  # the last, for it fits the rivals that were not
         )
 
