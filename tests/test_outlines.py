@@ -86,7 +86,7 @@ def of_corners(*corners):
 
 def test_a_star_closes_though_it_is_not_convex():
     star = of_corners((0, -0.03), (0.1, -0.1), (0.03, 0), (0.1, 0.1), (-0.1, 0))
-    assert star.closes(0.01).tolist() == [True]
+    assert star.closes().tolist() == [True]
     assert star.sound().tolist() == [False]
 
 
@@ -106,4 +106,4 @@ def test_what_runs_round_once_and_crosses_itself_does_not_close():
     knot = of_corners((0.1, 0.2), (0.1, 0.1), (0, 0.2), (0, 0.1), (0.2, 0.2), (0.2, 0.3))
     turns = np.mod(np.diff(knot.angles[0], append=knot.angles[0, 0]) + np.pi, 2 * np.pi) - np.pi
     assert turns.sum() == pytest.approx(2 * np.pi)
-    assert knot.closes(0.01).tolist() == [False]
+    assert knot.closes().tolist() == [False]

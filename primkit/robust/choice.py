@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,9 @@ from .free import free_candidate
 from .lack_of_fit import lack_of_fit
 from .outlines import LEAST_SIDE, Outlines
 from .scatter import SIGMAS, depth_of, noise_of
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
 
 FEW_NEW = 0.1  # share of new points up to which a group is fitted anew from what it was
 FEW_OFF = 0.02  # share of the points by which more may lie beside a group's shape then
@@ -99,11 +103,11 @@ class Choice:
         )
 
     @cached_property
-    def hull(self) -> Floats:
-        """The corners of the convex hull of the points, shape (M, 2), metres."""
+    def hull(self) -> BaseGeometry:
+        """The convex hull of the points."""
         import shapely
 
-        return np.asarray(shapely.get_coordinates(shapely.linestrings(self.points).convex_hull))
+        return shapely.linestrings(self.points).convex_hull
 
     @cached_property
     def closed(self) -> bool:

@@ -27,11 +27,10 @@ from numpy.typing import NDArray
 
 from ..arguments import Floats
 from ..seen import REACH
-from .outlines import QUARTERS, Outlines, from_angle_order, joined
+from .outlines import LEAST_STRETCH, QUARTERS, Outlines, from_angle_order, joined
 
 KNOTS = 60  # cuts lie between two of so many places along the outline, a centimetre apart or less
 MOST_PIECES = 5
-LEAST_STRETCH = 0.01  # m: two thirds of the shortest side; the rest of it may not have been seen
 MOST_CHORDS = 2
 ALONG_BEARING = REACH / 2  # m: a stretch that was not seen is wider than this across the bearings
 COMPANY, LEAST_COMPANY = 0.009, 3  # m: a point with fewer others as near is a stray
@@ -181,11 +180,11 @@ def moments_between(points: Floats, knots: NDArray[np.intp]) -> Floats:
     return sums[:, None, :-1] - sums[:, 1:, None]
 
 
-def long_enough(points: Floats, knots: NDArray[np.intp], least: float = LEAST_STRETCH) -> NDArray[np.bool_]:
+def long_enough(points: Floats, knots: NDArray[np.intp]) -> NDArray[np.bool_]:
     """Tell which pieces can be as long as a side must be: from the knot before them to the one after, shape (M, M)."""
     x, y = points[np.minimum(knots, len(points) - 1)].T
     chord = (x[1:] - x[:-1, None]) ** 2 + (y[1:] - y[:-1, None]) ** 2
-    return chord >= least**2
+    return chord >= LEAST_STRETCH**2
 
 
 def features_of(points: Floats) -> Floats:

@@ -35,7 +35,8 @@ from .scatter import CELL, SIGMAS, noise_of
 # What a board can hold, and a sensor can tell: sides of at least 1.5 cm, corners that bend by 15 to 160 degrees.
 LEAST_SIDE, LEAST_PLANK = 0.015, 0.004
 LEAST_TURN, MOST_TURN = np.radians(15), np.radians(160)
-LEAST_BEND, MOST_BEND = np.radians(8), np.radians(172)  # the same for outlines without a name
+# The same for pieces, of which a part may not have been seen, and for outlines without a name.
+LEAST_STRETCH, LEAST_BEND, MOST_BEND = 0.01, np.radians(8), np.radians(172)
 LEAST_MOUTH = 0.002  # m: shapes that stand nearer are one
 QUARTERS = np.arange(4) * (np.pi / 2)  # the bearings of a rectangle's normals, from its first
 # Lines that bend by less than this (as a sine) meet far beyond any board; this keeps the corner finite.
@@ -124,8 +125,8 @@ class Outlines:
         """Return by how much each side turns to the left into the next, shape (C, K), radians."""
         return np.mod(_after(self.angles) - self.angles + np.pi, 2 * np.pi) - np.pi
 
-    def closes(self, least: float) -> NDArray[np.bool_]:
-        """Tell which outlines run round once and cross themselves nowhere, with bends, and no side below ``least`` [m].
+    def closes(self) -> NDArray[np.bool_]:
+        """Tell which outlines run round once and cross themselves nowhere, with bends and sides that can be told.
 
         They need not be convex.
         """
@@ -134,7 +135,7 @@ class Outlines:
         turn, (begin, end) = self.turns(), self.spans()
         once_round = np.abs(turn.sum(axis=1) - 2 * np.pi) < 1e-6
         bends = ((np.abs(turn) >= LEAST_BEND) & (np.abs(turn) <= MOST_BEND)).all(axis=1)
-        closed = once_round & bends & (end - begin >= least).all(axis=1)
+        closed = once_round & bends & (end - begin >= LEAST_STRETCH).all(axis=1)
         if closed.any():
             closed &= shapely.is_simple(shapely.linearrings(self.corners()))
         return closed

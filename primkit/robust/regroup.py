@@ -141,9 +141,8 @@ def _with_what_is_inside(groups: list[Choice], lone: Floats, explain: Opinion, t
         across = np.hypot(*np.ptp(group.points, axis=0))
         if group not in groups or group.closed or across > MOST_ACROSS or not group.ranked or explain.bounded:
             continue
-        hull = shapely.linestrings(group.points).convex_hull
-        inside = [g for g in groups if g is not group and shapely.contains_xy(hull, *g.points.T).all()]
-        strays = lone[shapely.contains_xy(hull, *lone.T)]
+        inside = [g for g in groups if g is not group and shapely.contains_xy(group.hull, *g.points.T).all()]
+        strays = lone[shapely.contains_xy(group.hull, *lone.T)]
         if inside or len(strays):
             whole = explain(np.vstack([strays, *(g.points for g in [group, *inside])]))
             of_strays = INSIDE_COST * min(len(strays), MOST_INSIDE) - 2 * len(strays) * float(np.log(NOWHERE))
@@ -283,20 +282,14 @@ def _may_be_one(a: Choice, b: Choice, spread: float) -> bool:
 
     One of them must be open, and the points of both must lie along the hull of both.
     """
-    if (a.closed and b.closed) or len(a.points) + len(b.points) > MOST_POINTS or _apart(a, b) > MOST_ACROSS:
+    if (a.closed and b.closed) or len(a.points) + len(b.points) > MOST_POINTS:
         return False
     import shapely
 
-    hull = shapely.get_coordinates(shapely.linestrings(np.vstack([a.hull, b.hull])).convex_hull)
+    hull = shapely.get_coordinates(shapely.geometrycollections([a.hull, b.hull]).convex_hull)
     if np.hypot(*np.moveaxis(hull[:, None] - hull, 2, 0)).max() > MOST_ACROSS:
         return False
     edges = np.diff(hull, axis=0)  # clockwise: outwards is to the left
     outwards = np.column_stack([-edges[:, 1], edges[:, 0]]) / np.hypot(*edges.T)[:, None]
     depth = -(np.vstack([a.points, b.points]) @ outwards.T - (hull[:-1] * outwards).sum(axis=1)).max(axis=1)
     return bool(np.mean(depth <= 2 * depth_of(spread)) >= NEARLY_ALL)  # the hull runs along the outermost points
-
-
-def _apart(a: Choice, b: Choice) -> float:
-    """Return how far the boxes around two groups are apart, metres."""
-    gaps = a.hull.min(axis=0) - b.hull.max(axis=0), b.hull.min(axis=0) - a.hull.max(axis=0)
-    return float(np.max(gaps))
