@@ -152,7 +152,7 @@ def test_a_piece_that_is_not_worth_its_price_is_left_out():
     whole = outline_of(hexagon)
     turned = np.append(whole.angles, whole.angles[:, -1:] + 0.15, axis=1)
     broken = Outlines(turned, np.append(whole.offsets, whole.offsets[:, -1:] * 1.001, axis=1))
-    assert _pruned(hexagon.outline(300), broken, LEAST_SPREAD, 0.005).angles.shape == (1, 6)
+    assert _pruned(hexagon.outline(300), broken, LEAST_SPREAD).angles.shape == (1, 6)
 
 
 def outline_of(polygon):

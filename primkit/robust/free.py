@@ -34,7 +34,7 @@ from numpy.typing import NDArray
 from ..arguments import Floats
 from .cuts import in_company, long_enough, moments_between, scatter_sums, squares_of
 from .evidence import Candidate, judged
-from .outlines import Outlines
+from .outlines import LEAST_SIDE, Outlines
 from .refine import refine_soft
 from .scatter import CELL, SIGMAS
 
@@ -47,7 +47,7 @@ AT_AN_END = 0.2  # of the path: there a stray may be its end, and is left out wh
 CLOSED_GAP = 0.06  # m: nearer ends close an outline: nearly three times as far as neighbours are linked
 PATH_KNOTS = 120  # cuts lie between two of so many places along the path
 PIECE_COSTS = 20.0, 40.0, 80.0, 160.0  # about a side's two numbers (``evidence.price``); where they do not close, more
-SHORT, FLAT_TURN = 0.02, np.radians(35)  # m: a side that may be none, and a turn where two may be one
+FLAT_TURN = np.radians(35)  # where a piece turns by less, or is shorter than two least sides, there may be none
 ENOUGH_TO_CUT = 600  # points; of more, the least misfit is worth a piece
 CUT_LOOKS = 2  # strays lead cuts astray: once more without them
 FAR_SPREADS, FAR_CELLS = 9.0, 4.0  # what is farther from the first outline is a stray to the second
@@ -91,7 +91,7 @@ def _pruned(points: Floats, outline: Outlines, spread: float) -> Outlines:
     while outline.angles.shape[1] > 3:
         begin, end = outline.spans()
         turn = np.abs(outline.turns()[0])
-        doubtful = ((end - begin)[0] < SHORT) | (turn < FLAT_TURN) | (np.roll(turn, 1) < FLAT_TURN)
+        doubtful = ((end - begin)[0] < 2 * LEAST_SIDE) | (turn < FLAT_TURN) | (np.roll(turn, 1) < FLAT_TURN)
         for side in np.flatnonzero(doubtful):
             fewer = Outlines(np.delete(outline.angles, side, axis=1), np.delete(outline.offsets, side, axis=1))
             if fewer.closes()[0]:
