@@ -145,8 +145,12 @@ def without_points(figure: Outlines, points: Floats, spread: float) -> NDArray[n
 
 
 def sides_seen(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bool_]:
-    """Tell which sides of an outline have enough points of their own, away from their corners, shape (K,)."""
+    """Tell which sides of an outline have enough points of their own, away from their corners, shape (K,).
+
+    Of a side whose very middle noise may bring to another, as in a thin strip, no point is its own.
+    """
     own, t, (begin, end) = own_points(figure, points, spread), figure.along(points)[0], figure.spans()
+    own &= own_points(figure, np.mean(figure.ends(), axis=0)[0], spread).diagonal()
     first, last = (
         np.where(own, t, np.inf).min(axis=0, initial=np.inf),
         np.where(own, t, -np.inf).max(axis=0, initial=-np.inf),
