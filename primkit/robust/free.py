@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 BEAD_CELLS, BEAD_SPREADS = 3.0, 4.0  # neighbours this near are one bead of the path: then noise makes no detours
 MOST_BEADS = 300  # more are made larger: the tree's work goes with their number squared
 AT_AN_END = 0.2  # of the path: there a stray may be its end, and is left out where that closes the path
-CLOSED_GAP = 0.06  # m: nearer ends close an outline: nearly three times as far as neighbours are linked
+CLOSED_GAP, WIDEST_GAP = 0.04, 0.06  # m: nearer ends close an outline; and at most, with lone points or without
 PATH_KNOTS = 120  # cuts lie between two of so many places along the path
 PIECE_COSTS = 20.0, 40.0, 80.0, 160.0  # about a side's two numbers (``evidence.price``); where they do not close, more
 FLAT_TURN = np.radians(35)  # where a piece turns by less, or is shorter than two least sides, there may be none
@@ -107,12 +107,13 @@ def _pruned(points: Floats, outline: Outlines, spread: float) -> Outlines:
 def round_order(points: Floats, spread: float) -> Floats | None:
     """Return the points in their order around an outline, counter-clockwise and without strays; None if it is open.
 
-    Lone points may be strays, or of a side that few beams met: they are left out if the path closes better so.
+    Lone points may be strays, or of a side that few beams met: they are left out where the path closes without them.
     """
     near, size = in_company(points, spread), _bead_size(spread)
-    ways = [points[near], points][: 1 if near.all() else 2]
-    gap, path = min((_closed(path_through(kept, spread)) for kept in ways), key=lambda way: way[0])
-    if path is None or gap > CLOSED_GAP + size:
+    gap, path = _closed(path_through(points[near], spread))
+    if gap > CLOSED_GAP + size and not near.all():
+        gap, path = min((gap, path), _closed(path_through(points, spread)), key=lambda way: way[0])
+    if path is None or gap > WIDEST_GAP + size:
         return None
     place, distance = _along(points, path)
     close = distance <= size + SIGMAS * spread
