@@ -40,7 +40,7 @@ from .steps import Steps
 from .table import Table
 
 # Groups as they were measured last, by their points: the warm starts of the next look at a map that grows.
-WarmStarts = dict[tuple[bytes, float, int, bool, bool, tuple[str, ...]], Choice]
+WarmStarts = dict[tuple[bytes, float, bool, bool, tuple[str, ...]], Choice]
 
 SAME_SPREAD = 1.25  # fits are done anew when the spread comes out farther than this from what was supposed
 CONTRADICTED = 1.5  # neighbours scatter less than their noise lets them, if anything
@@ -197,12 +197,12 @@ def find_again(
     order = np.lexsort((local[:, 1], local[:, 0]))  # the order of seeing leaves no trace
     points, local, scans = points[order], local[order], scans[order]
     group_rng, measure_rng = as_rng(rng).spawn(2)
-    labels = steps.labels(points, n_shapes)
-    grouped = labels is not None
+    grouped = (labels := steps.labels(points, n_shapes)) is not None
     if labels is None:
         labels = _groups(local, n_shapes, settings, group_rng)
     together = [local[labels == label] for label in range(labels.max() + 1)]
-    account = Account.of(points, local, frame, 0 if grouped else int(np.count_nonzero(labels < 0)), scans)
+    lone = local[(labels < 0) & (not grouped)]  # nobody chose to leave them out
+    account = Account.of(points, local, frame, len(lone), scans)
     steps = steps.within(frame)
     if settings.noise_std is not None:
         settings = replace(settings, noise_std=settings.noise_std / frame.unit)
@@ -215,7 +215,7 @@ def find_again(
         found += _as_published(together, settings, steps, measure_rng)
     else:
         together = [points for points in together if not account.by_chance(points)]  # strays, not to be explained
-        groups, margins, bounded = _jointly(together, n_shapes, settings, kinds, warm, measure_rng)
+        groups, margins, bounded = _jointly(together, lone, n_shapes, settings, kinds, warm)
         for group, margin in zip(groups, margins, strict=True):
             for thing in things_of(group, margin, account):
                 if isinstance(thing, Detection):
@@ -257,14 +257,14 @@ def _groups(points: Floats, n_shapes: int | None, settings: Settings, rng: np.ra
 
 def _jointly(
     together: list[Floats],
+    lone: Floats,
     n_shapes: int | None,
     settings: Settings,
     kinds: tuple[Kind, ...],
     warm: WarmStarts,
-    rng: np.random.Generator,
 ) -> tuple[list[Choice], list[float], bool]:
     """Explain each group, and ask for a second opinion on the groups: the default way; tell if a bound was reached."""
-    how = (int(rng.integers(2**63)), settings.soft, settings.thorough, kinds)
+    how = (settings.soft, settings.thorough, kinds)
     anew = partial(explained, soft=settings.soft, thorough=settings.thorough, kinds=kinds)
     used: WarmStarts = {}
 
@@ -281,7 +281,7 @@ def _jointly(
     margins, opinion = [float("nan")] * len(groups), Opinion(partial(explain, spread=spread))
     opinion.work = sum(len(points) + WORK_OF_A_TRY for points in together)
     if settings.second_opinion if n_shapes is None else len(groups) != n_shapes:
-        groups, margins = regrouped(groups, spread, explain=opinion)
+        groups, margins = regrouped(groups, spread, explain=opinion, lone=lone)
     if n_shapes is None:
         beside = [explain(points, spread) for group in groups for points in beside_walls(group)]
         groups, margins = groups + beside, margins + [0.0] * len(beside)

@@ -108,6 +108,14 @@ def test_a_line_over_a_hidden_side_is_not_seen():
     assert sides_seen(outline, kept, 0.0004).tolist() == [True, True, False, True, True]
 
 
+def test_a_wall_that_noise_widens_into_a_strip_has_no_sides_of_its_own():
+    """Points of one straight piece lie on both long sides of a strip along it; their distance was not measured."""
+    strip, rng = pk.Polygon([(0, 0), (0.28, 0), (0.28, 0.006), (0, 0.006)]), np.random.default_rng(0)
+    wall = np.column_stack([rng.uniform(0, 0.28, 900), rng.normal(0.003, 0.005, 900)])
+    assert not sides_seen(outline_of(strip), wall, 0.003).any()
+    assert sides_seen(outline_of(strip), strip.outline(900), LEAST_SPREAD).sum() == 2  # without noise, they are seen
+
+
 def test_the_published_method_states_no_deviation():
     found = pk.find_shapes(
         TRIANGLE.outline(200), 1, settings=pk.Settings(grouping="kmeans", method="published", line_trials=200), rng=0

@@ -23,7 +23,7 @@ def assert_same(found, true, tolerance):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@settings(max_examples=40)
+@settings(max_examples=12)
 @given(seed=st.integers(0, 10_000))
 def test_an_exact_outline_gives_the_exact_shape(kind, seed):
     true = shape_of(seed, kind)

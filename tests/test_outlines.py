@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 import primkit as pk
 from primkit.robust.outlines import Outlines, from_angle_order, joined
+from primkit.robust.scatter import LEAST_SPREAD, spread_across
 
 
 def outline_of(polygon):
@@ -85,8 +86,19 @@ def of_corners(*corners):
 
 def test_a_star_closes_though_it_is_not_convex():
     star = of_corners((0, -0.03), (0.1, -0.1), (0.03, 0), (0.1, 0.1), (-0.1, 0))
-    assert star.closes(0.01).tolist() == [True]
+    assert star.closes().tolist() == [True]
     assert star.sound().tolist() == [False]
+
+
+def test_a_t_is_not_as_well_two_bars_where_a_point_fills_the_end_of_the_mouth_between_them():
+    t = of_corners((-2, 8), (-2, 3), (-9, 3), (-9, 0), (9, 0), (9, 3), (2, 3), (2, 8))
+    tee = Outlines(t.angles, t.offsets / 50)
+    stem, bar = pk.Polygon([(-0.04, 0.062), (0.04, 0.062), (0.04, 0.16), (-0.04, 0.16)]), tee.corners()[0, 2:6]
+    two = np.vstack([pk.Polygon(bar).outline(900), stem.outline(900)])
+    assert tee.of_two(two, LEAST_SPREAD)
+    assert not tee.of_two(np.vstack([two, (0.04, 0.061)]), LEAST_SPREAD)
+    assert tee.of_two(np.vstack([two, (0.04, 0.061)]), spread_across(0.002))  # it may be of the bar
+    assert not of_corners((0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)).of_two(two, LEAST_SPREAD)  # one bends inwards
 
 
 def test_what_runs_round_once_and_crosses_itself_does_not_close():
@@ -94,4 +106,4 @@ def test_what_runs_round_once_and_crosses_itself_does_not_close():
     knot = of_corners((0.1, 0.2), (0.1, 0.1), (0, 0.2), (0, 0.1), (0.2, 0.2), (0.2, 0.3))
     turns = np.mod(np.diff(knot.angles[0], append=knot.angles[0, 0]) + np.pi, 2 * np.pi) - np.pi
     assert turns.sum() == pytest.approx(2 * np.pi)
-    assert knot.closes(0.01).tolist() == [False]
+    assert knot.closes().tolist() == [False]

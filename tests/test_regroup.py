@@ -6,6 +6,7 @@ import pytest
 import primkit as pk
 from primkit.robust import regroup
 from primkit.robust.choice import explained
+from primkit.robust.evidence import CERTAIN
 from primkit.robust.regroup import cost_of
 from primkit.robust.scatter import LEAST_SPREAD, NOWHERE
 
@@ -121,6 +122,25 @@ def test_a_last_piece_joins_an_outline_that_is_nearly_closed():
     ring = pk.Circle((0, 0), 0.08).outline(240)
     (group,) = regrouped(groups_of(ring[:218], ring[224:236]), LEAST_SPREAD)
     assert group.shape.kind == "circle"
+
+
+@pytest.mark.parametrize("depth", [0.0, 0.06], ids=["lone points", "lone points and a group"])
+def test_what_is_seen_of_a_notch_belongs_to_the_outline_around_it(depth):
+    notched = [(0, 0), (0.2, 0), (0.2, 0.2), (0.15, 0.2), (0.15, 0.05), (0.05, 0.05), (0.05, 0.2), (0, 0.2)]
+    ring = pk.Polygon(notched).outline(550)
+    of_notch = (np.abs(ring[:, 0] - 0.1) < 0.0505) & (ring[:, 1] > 0.01) & (ring[:, 1] < 0.199)
+    linked, lone = of_notch & (ring[:, 1] < depth), ring[of_notch & (ring[:, 1] >= depth)][::8]
+    parts = [ring[~of_notch], ring[linked]][: 1 + linked.any()]
+    (one,), (margin,) = regroup.regrouped(groups_of(*parts), LEAST_SPREAD, lone=lone)
+    assert (one.shape.kind, len(one.shape.vertices), len(one.points)) == ("polygon", 8, sum(map(len, [*parts, lone])))
+    assert margin > CERTAIN
+
+
+def test_strays_inside_an_open_outline_stay_strays():
+    points = RECTANGLE.outline(300)
+    three_sides, strays = points[points[:, 1] < 0.039], np.random.default_rng(0).uniform(-0.03, 0.03, (4, 2))
+    ((one,), _) = regroup.regrouped(groups_of(three_sides), LEAST_SPREAD, lone=strays)
+    assert len(one.points) == len(three_sides)
 
 
 def test_strays_in_a_group_do_not_split_it():

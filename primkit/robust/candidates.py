@@ -145,8 +145,7 @@ def _fits(points: Floats, spread: float, thorough: bool, kinds: Sequence[str]) -
 
 
 Way = tuple[int, bool]  # number of sides, 0 of a circle and 1 of a wall; and whether at right angles
-KIND_OF = {(0, False): "circle", (1, False): "wall", (3, False): "triangle", (5, False): "pentagon"}
-KIND_OF |= {(4, False): "polygon", (4, True): "rectangle"}
+KIND_OF = ("circle", "wall", "", "triangle", "polygon", "pentagon")  # by the number of sides, but at right angles
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,7 +197,7 @@ class Ways:
             for way in sorted(self.least, key=self.least.__getitem__):
                 chance = 0.0 if way[1] else CHANCE * max(way[0] - winner, 0)
                 may_win = self.least[way] <= (best - chance if again else best + CERTAIN)
-                if KIND_OF[way] not in kinds or not (may_win or thorough):
+                if ("rectangle" if way[1] else KIND_OF[way[0]]) not in kinds or not (may_win or thorough):
                     continue
                 cost, figure = self.fitted(way, again=again)
                 if figure is not None:
@@ -313,9 +312,8 @@ def _explains(points: Floats, best: Candidate, spread: float) -> bool:
     """Tell whether nearly all points lie on the best explanation, all around, and without any order in their misses."""
     if best.n_on < NEARLY_ALL * len(points) or min(best.seen, default=1.0) < NEARLY_ALL:
         return False
-    if isinstance(best.figure, Line):  # what is as thin closes around nothing that a rectangle would not
-        return True
-    return lack_of_fit(points, best.figure, spread, square=best.square) >= CERTAIN
+    # What is as thin as a wall closes around nothing that a rectangle would not.
+    return isinstance(best.figure, Line) or lack_of_fit(points, best.figure, spread, square=best.square) >= CERTAIN
 
 
 def polished(points: Floats, rough: Candidate, spread: float, *, soft: bool = True) -> Candidate | None:

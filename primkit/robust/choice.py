@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,7 @@ from ..arguments import Floats, Ints
 from ..circles import straightened
 from ..lines import Line
 from ..seen import REACH, seen_shares
-from ..shapes import KINDS, Circle, Polygon, Shape
+from ..shapes import KINDS, Circle, Shape
 from .candidates import candidates, explained_again
 from .deviations import Certainty, certainty, without_points
 from .evidence import CERTAIN, NEARLY_ALL, Candidate
@@ -25,6 +26,9 @@ from .free import free_candidate
 from .lack_of_fit import lack_of_fit
 from .outlines import LEAST_SIDE, Outlines
 from .scatter import SIGMAS, depth_of, noise_of
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
 
 FEW_NEW = 0.1  # share of new points up to which a group is fitted anew from what it was
 FEW_OFF = 0.02  # share of the points by which more may lie beside a group's shape then
@@ -99,22 +103,16 @@ class Choice:
         )
 
     @cached_property
-    def hull(self) -> Floats:
-        """The corners of the convex hull of the points, shape (M, 2), metres."""
+    def hull(self) -> BaseGeometry:
+        """The convex hull of the points."""
         import shapely
 
-        return np.asarray(shapely.get_coordinates(shapely.linestrings(self.points).convex_hull))
+        return shapely.linestrings(self.points).convex_hull
 
     @cached_property
     def closed(self) -> bool:
-        """Whether the best explanation's outline was seen nearly all around."""
-        shape = self.shape
-        if shape is None:
-            return False
-        lengths = shape.sides if isinstance(shape, Polygon) else [shape.perimeter]
-        if np.average(self.ranked[0].seen, weights=lengths) >= NEARLY_ALL:  # by those points alone that lie on it
-            return True
-        return bool(np.average(seen_shares(shape, self.points), weights=lengths) >= NEARLY_ALL)
+        """Whether each side of the best explanation's outline was seen nearly from end to end."""
+        return self.shape is not None and min(seen_shares(self.shape, self.points)) >= NEARLY_ALL
 
     @property
     def lead(self) -> float:
@@ -155,8 +153,7 @@ class Choice:
 
         It is ahead of all rivals, and of itself with bends; nearly all points lie on it, none deep inside; nearly all
         of it was seen, each side by points of its own, or, where only the four kinds can be there, three eighths of a
-        circle; it is so large that its kind can show, and no cut between two corners that bend inwards leaves two
-        shapes with names.
+        circle; it is so large that its kind can show, and it is not as well two shapes with names side by side.
         """
         best = self.ranked[0] if self.ranked else None
         if best is None or best.shape is None:
@@ -170,7 +167,7 @@ class Choice:
             and (min(best.seen) >= MOST_SEEN or self._round_enough(best))
             and not (isinstance(figure, Outlines) and without_points(figure, self.points, self.spread).any())
             and large >= LEAST_SIDE
-            and not (isinstance(figure, Outlines) and figure.of_two)
+            and not (isinstance(figure, Outlines) and figure.of_two(self.points, self.spread))
             and self.margin >= CERTAIN  # the last, for it fits the rivals that were not
         )
 

@@ -27,17 +27,14 @@ from numpy.typing import NDArray
 
 from ..arguments import Floats
 from ..seen import REACH
-from .outlines import QUARTERS, Outlines, from_angle_order, joined
+from .outlines import LEAST_STRETCH, QUARTERS, Outlines, from_angle_order, joined
 
 KNOTS = 60  # cuts lie between two of so many places along the outline, a centimetre apart or less
 MOST_PIECES = 5
-LEAST_STRETCH = 0.01  # m: two thirds of the shortest side; the rest of it may not have been seen
 MOST_CHORDS = 2
 ALONG_BEARING = REACH / 2  # m: a stretch that was not seen is wider than this across the bearings
-COMPANY, LEAST_COMPANY = 0.009, 3  # m: a point with fewer others as near is a stray, if most have as many
-MOST_IN_COMPANY = 0.5
+COMPANY, LEAST_COMPANY = 0.009, 3  # m: a point with fewer others as near is a stray
 DRAWN_IN = 50  # a frame is drawn in by one point in so many
-BENT_OUT, BENT_TURNS = 0.01, (0.5, 1.0)  # m and rad: two unseen sides behind one chord
 
 Line = tuple[float, float]  # bearing of the normal, and offset
 
@@ -82,13 +79,13 @@ class Cut:
 
 
 def in_company(points: Floats, spread: float) -> NDArray[np.bool_]:
-    """Tell which points have others near them, as on an outline, and are no strays, shape (N,); all if few do."""
+    """Tell which points have others near them, as on an outline, and are no strays, shape (N,)."""
     from scipy.spatial import cKDTree
 
     if len(points) <= LEAST_COMPANY:
         return np.ones(len(points), dtype=bool)
-    near = cKDTree(points).query(points, LEAST_COMPANY + 1)[0][:, -1] <= COMPANY + spread  # itself is the first
-    return near if near.mean() >= MOST_IN_COMPANY else np.ones(len(points), dtype=bool)
+    near: NDArray[np.bool_] = cKDTree(points).query(points, LEAST_COMPANY + 1)[0][:, -1] <= COMPANY + spread
+    return near  # itself is the first
 
 
 def by_bearing(points: Floats) -> Floats:
@@ -158,17 +155,9 @@ def _cuts_from(ordered: Floats, first: int) -> dict[int, Cut]:
 
 
 def outlines_with(cuts: dict[int, Cut], spans: list[Line] | tuple[()], k: int) -> Outlines | None:
-    """Return outlines of k sides: k pieces; or k - 1 and the widest chord; or k - 2 and two, or a bent one."""
+    """Return outlines of k sides: k pieces; or k - 1 and the widest chord; or k - 2 and two."""
     rows = [cuts[k - n].lines + list(spans[:n]) for n in range(len(spans) + 1) if k - n in cuts and k - n > 0]
-    if spans and k - 2 in cuts and k > 2:
-        angle, offset = spans[0]
-        rows += [
-            [*cuts[k - 2].lines, (angle - turn, offset + BENT_OUT), (angle + turn, offset + BENT_OUT)]
-            for turn in BENT_TURNS
-        ]
-    if not rows:
-        return None
-    return from_angle_order(*np.moveaxis(np.array(rows), 2, 0))
+    return from_angle_order(*np.moveaxis(np.array(rows), 2, 0)) if rows else None
 
 
 def frames(points: Floats, outlines: Outlines) -> Outlines:
@@ -191,11 +180,11 @@ def moments_between(points: Floats, knots: NDArray[np.intp]) -> Floats:
     return sums[:, None, :-1] - sums[:, 1:, None]
 
 
-def long_enough(points: Floats, knots: NDArray[np.intp], least: float = LEAST_STRETCH) -> NDArray[np.bool_]:
+def long_enough(points: Floats, knots: NDArray[np.intp]) -> NDArray[np.bool_]:
     """Tell which pieces can be as long as a side must be: from the knot before them to the one after, shape (M, M)."""
     x, y = points[np.minimum(knots, len(points) - 1)].T
     chord = (x[1:] - x[:-1, None]) ** 2 + (y[1:] - y[:-1, None]) ** 2
-    return chord >= least**2
+    return chord >= LEAST_STRETCH**2
 
 
 def features_of(points: Floats) -> Floats:

@@ -45,7 +45,7 @@ LEAST_SEEN_STRETCH = 0.008
 LEAST_SHARE = 0.4
 LEAST_OF_CIRCLE = 0.45
 CORNER_SPREADS = 4.0
-OWN_SPREADS, LEAST_OWN = 3.0, 2  # spreads and points: next to no two of a neighbour's points lie farther from its line
+LEAST_OWN = 2  # points: next to no two of a neighbour's lie farther from its line than noise brings them
 MOST_STD = 0.01  # m: what is not even known to a centimetre was not measured, but supposed
 AHEAD, LEAST_RISE, MOST_WIDER = 3.0, 0.6, 3.0  # deviations; share of the rise that should be; times
 STEP = 1e-6  # rad and m, and spreads: the derivatives' step, far above rounding and far below any curvature
@@ -140,13 +140,17 @@ def without_points(figure: Outlines, points: Floats, spread: float) -> NDArray[n
     Where points are sparse, those of its neighbours lie near a hidden side, too.
     """
     begin, end = figure.spans()
-    long = (end - begin)[0] >= (2 * OWN_SPREADS + 1) * spread
-    return np.asarray(long & (own_points(figure, points, spread, OWN_SPREADS).sum(axis=0) < LEAST_OWN))
+    long = (end - begin)[0] >= (2 * SIGMAS + 1) * spread
+    return np.asarray(long & (own_points(figure, points, spread, SIGMAS).sum(axis=0) < LEAST_OWN))
 
 
 def sides_seen(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bool_]:
-    """Tell which sides of an outline have enough points of their own, away from their corners, shape (K,)."""
+    """Tell which sides of an outline have enough points of their own, away from their corners, shape (K,).
+
+    Of a side whose very middle noise may bring to another, as in a thin strip, no point is its own.
+    """
     own, t, (begin, end) = own_points(figure, points, spread), figure.along(points)[0], figure.spans()
+    own &= own_points(figure, np.mean(figure.ends(), axis=0)[0], spread).diagonal()
     first, last = (
         np.where(own, t, np.inf).min(axis=0, initial=np.inf),
         np.where(own, t, -np.inf).max(axis=0, initial=-np.inf),

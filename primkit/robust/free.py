@@ -3,7 +3,7 @@
 The points of an outline have an order, even where bearings do not tell it: along a path from neighbour to neighbour. In
 that order the outline is cut into straight pieces so that
 
-    sum of squared distances / spread^2  +  PIECE_COST x number of pieces
+    sum of squared distances / spread^2  +  PIECE_COSTS x number of pieces
 
 is the least of all ways, by dynamic programming; then all sides are fitted together. It is the rival of every shape
 with a name: what a free outline explains better is none of them.
@@ -26,7 +26,6 @@ one in the minimum spanning tree, Kruskal (1956).
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,7 +34,7 @@ from numpy.typing import NDArray
 from ..arguments import Floats
 from .cuts import in_company, long_enough, moments_between, scatter_sums, squares_of
 from .evidence import Candidate, judged
-from .outlines import Outlines
+from .outlines import LEAST_SIDE, Outlines
 from .refine import refine_soft
 from .scatter import CELL, SIGMAS
 
@@ -45,12 +44,10 @@ if TYPE_CHECKING:
 BEAD_CELLS, BEAD_SPREADS = 3.0, 4.0  # neighbours this near are one bead of the path: then noise makes no detours
 MOST_BEADS = 300  # more are made larger: the tree's work goes with their number squared
 AT_AN_END = 0.2  # of the path: there a stray may be its end, and is left out where that closes the path
-CLOSED_GAP = 0.04  # m: nearer ends close an outline: nearly twice as far as neighbours are linked
+CLOSED_GAP, WIDEST_GAP = 0.04, 0.06  # m: nearer ends close an outline; and at most, with lone points or without
 PATH_KNOTS = 120  # cuts lie between two of so many places along the path
-PIECE_COST = 20.0  # about the price of a side's two numbers, see ``evidence.price``
-DEARER, TIMES_DEARER = 2.0, 4  # where pieces do not close, fewer are tried
-SIDE_CELLS, SIDE_SPREADS = 5.0, 2.0  # no side is shorter
-SHORT, FLAT_TURN = 4.0, np.radians(35)  # of the least side; where two pieces may be one
+PIECE_COSTS = 20.0, 40.0, 80.0, 160.0  # about a side's two numbers (``evidence.price``); where they do not close, more
+FLAT_TURN = np.radians(35)  # where a piece turns by less, or is shorter than two least sides, there may be none
 ENOUGH_TO_CUT = 600  # points; of more, the least misfit is worth a piece
 CUT_LOOKS = 2  # strays lead cuts astray: once more without them
 FAR_SPREADS, FAR_CELLS = 9.0, 4.0  # what is farther from the first outline is a stray to the second
@@ -73,17 +70,14 @@ def free_outline(points: Floats, spread: float) -> Outlines | None:
     spread : float
         Standard deviation of the points from the outline, metres.
     """
-    least = max(SIDE_CELLS * CELL, SIDE_SPREADS * spread)
     kept, found = points, None
     for _ in range(CUT_LOOKS):
         ordered = round_order(kept, spread)
-        starts = () if ordered is None else _outlines(ordered[:: -(-len(ordered) // ENOUGH_TO_CUT)], spread, least)
-        start = next((o for o in starts if o.closes(least)[0]), None)
+        starts = () if ordered is None else _outlines(ordered[:: -(-len(ordered) // ENOUGH_TO_CUT)], spread)
+        start = next((o for o in starts if o.closes()[0]), None)
         if start is None:
             break
-        found = _pruned(
-            points, refine_soft(points, start, spread, sound=partial(Outlines.closes, least=least)), spread, least
-        )
+        found = _pruned(points, refine_soft(points, start, spread, sound=Outlines.closes), spread)
         distance = np.abs(found.distance(points)[0])
         if (distance <= SIGMAS * spread).mean() >= 0.98:
             break
@@ -91,17 +85,17 @@ def free_outline(points: Floats, spread: float) -> Outlines | None:
     return found
 
 
-def _pruned(points: Floats, outline: Outlines, spread: float, least: float) -> Outlines:
+def _pruned(points: Floats, outline: Outlines, spread: float) -> Outlines:
     """Return the outline without those of its sides that are not worth their price."""
     cost = judged(points, outline, spread).cost
     while outline.angles.shape[1] > 3:
         begin, end = outline.spans()
         turn = np.abs(outline.turns()[0])
-        doubtful = ((end - begin)[0] < SHORT * least) | (turn < FLAT_TURN) | (np.roll(turn, 1) < FLAT_TURN)
+        doubtful = ((end - begin)[0] < 2 * LEAST_SIDE) | (turn < FLAT_TURN) | (np.roll(turn, 1) < FLAT_TURN)
         for side in np.flatnonzero(doubtful):
             fewer = Outlines(np.delete(outline.angles, side, axis=1), np.delete(outline.offsets, side, axis=1))
-            if fewer.closes(least)[0]:
-                fewer = refine_soft(points, fewer, spread, sound=partial(Outlines.closes, least=least))
+            if fewer.closes()[0]:
+                fewer = refine_soft(points, fewer, spread, sound=Outlines.closes)
                 if (without := judged(points, fewer, spread).cost) < cost:
                     outline, cost = fewer, without
                     break
@@ -111,29 +105,31 @@ def _pruned(points: Floats, outline: Outlines, spread: float, least: float) -> O
 
 
 def round_order(points: Floats, spread: float) -> Floats | None:
-    """Return the points in their order around an outline, counter-clockwise and without strays; None if it is open."""
-    near = in_company(points, spread)
-    ordered = _round_path(points, points[near], spread)
-    return _round_path(points, points, spread) if ordered is None and not near.all() else ordered
+    """Return the points in their order around an outline, counter-clockwise and without strays; None if it is open.
 
-
-def _round_path(points: Floats, reliable: Floats, spread: float) -> Floats | None:
-    """Return the points along the path through the reliable ones; None where its ends do not meet."""
-    path = path_through(reliable, spread)
-    if path is None:
+    Lone points may be strays, or of a side that few beams met: they are left out where the path closes without them.
+    """
+    near, size = in_company(points, spread), _bead_size(spread)
+    gap, path = _closed(path_through(points[near], spread))
+    if gap > CLOSED_GAP + size and not near.all():
+        gap, path = min((gap, path), _closed(path_through(points, spread)), key=lambda way: way[0])
+    if path is None or gap > WIDEST_GAP + size:
         return None
+    place, distance = _along(points, path)
+    close = distance <= size + SIGMAS * spread
+    ordered = points[close][np.argsort(place[close], kind="stable")]
+    x, y = ordered.T
+    return ordered if (x * np.roll(y, -1)).sum() > (np.roll(x, -1) * y).sum() else ordered[::-1]
+
+
+def _closed(path: Floats | None) -> tuple[float, Floats | None]:
+    """Return how near two places at the ends of a path come, metres, and the path between them."""
+    if path is None:
+        return np.inf, None
     n = max(1, int(AT_AN_END * len(path)))
     gaps = np.hypot(*np.moveaxis(path[:n, None] - path[None, -n:], 2, 0))
     first, last = np.unravel_index(int(gaps.argmin()), gaps.shape)
-    size = _bead_size(spread)
-    if gaps[first, last] > CLOSED_GAP + size:
-        return None
-    path = path[first : len(path) - n + int(last) + 1]
-    place, distance = _along(points, path)
-    near = distance <= size + SIGMAS * spread
-    ordered = points[near][np.argsort(place[near], kind="stable")]
-    x, y = ordered.T
-    return ordered if (x * np.roll(y, -1)).sum() > (np.roll(x, -1) * y).sum() else ordered[::-1]
+    return float(gaps[first, last]), path[first : len(path) - n + int(last) + 1]
 
 
 def path_through(points: Floats, spread: float) -> Floats | None:
@@ -195,25 +191,26 @@ def _along(points: Floats, path: Floats) -> tuple[Floats, Floats]:
     return place, distance[row, nearest]
 
 
-def _outlines(points: Floats, spread: float, least: float) -> Iterator[Outlines]:
+def _outlines(points: Floats, spread: float) -> Iterator[Outlines]:
     """Yield outlines through points in order, of fewer and fewer pieces."""
     points = np.roll(points, -int((points**2).sum(axis=1).argmax()), axis=0)  # the farthest point is a corner
-    for dearer in range(TIMES_DEARER):
-        price = PIECE_COST * DEARER**dearer
-        cuts, _ = _best_cut(points, spread, price, least)
+    for price in PIECE_COSTS:
+        cuts, _ = _best_cut(points, spread, price)
         if len(cuts) < 3:
             return
         points = np.roll(points, -int(cuts[len(cuts) // 2]), axis=0)  # once more, from a cut on the other side
-        cuts, pieces = _best_cut(points, spread, price, least)
+        cuts, pieces = _best_cut(points, spread, price)
         if len(cuts) >= 3:
             yield _joined_lines(points, cuts, pieces)
 
 
-def _best_cut(points: Floats, spread: float, price: float, least: float) -> tuple[NDArray[np.intp], Floats]:
+def _best_cut(points: Floats, spread: float, price: float) -> tuple[NDArray[np.intp], Floats]:
     """Return at which points the best pieces begin, shape (K,), and their sums, shape (6, K)."""
-    knots = np.arange(min(PATH_KNOTS, len(points)) + 1) * len(points) // min(PATH_KNOTS, len(points))
+    step = np.hypot(*(points - np.roll(points, 1, axis=0)).T)
+    place = np.append(0.0, np.cumsum(step / step.sum() + 1 / len(points)))  # few points tell of a long side, too
+    knots = np.unique(np.searchsorted(place, np.linspace(0.0, place[-1], PATH_KNOTS + 1)).clip(0, len(points)))
     moments = moments_between(points, knots)
-    cost = np.where(long_enough(points, knots, least), squares_of(moments), np.inf) / spread**2 + price
+    cost = np.where(long_enough(points, knots), squares_of(moments), np.inf) / spread**2 + price
     best, begin = np.append(0.0, np.full(len(cost), np.inf)), [0]  # best[j]: the least cost up to knot j
     for end in range(1, len(best)):
         all_ways = best[:end] + cost[:end, end - 1]

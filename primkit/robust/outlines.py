@@ -30,11 +30,14 @@ from numpy.typing import NDArray
 
 from ..arguments import Floats
 from ..shapes import KINDS, NEARLY_RIGHT, Kind, Polygon, turns_of
+from .scatter import CELL, SIGMAS, noise_of
 
 # What a board can hold, and a sensor can tell: sides of at least 1.5 cm, corners that bend by 15 to 160 degrees.
 LEAST_SIDE, LEAST_PLANK = 0.015, 0.004
 LEAST_TURN, MOST_TURN = np.radians(15), np.radians(160)
-LEAST_BEND, MOST_BEND = np.radians(8), np.radians(172)  # the same for outlines without a name
+# The same for pieces, of which a part may not have been seen, and for outlines without a name.
+LEAST_STRETCH, LEAST_BEND, MOST_BEND = 0.01, np.radians(8), np.radians(172)
+LEAST_MOUTH = 0.002  # m: shapes that stand nearer are one
 QUARTERS = np.arange(4) * (np.pi / 2)  # the bearings of a rectangle's normals, from its first
 # Lines that bend by less than this (as a sine) meet far beyond any board; this keeps the corner finite.
 PARALLEL = 1e-12
@@ -122,8 +125,8 @@ class Outlines:
         """Return by how much each side turns to the left into the next, shape (C, K), radians."""
         return np.mod(_after(self.angles) - self.angles + np.pi, 2 * np.pi) - np.pi
 
-    def closes(self, least: float) -> NDArray[np.bool_]:
-        """Tell which outlines run round once and cross themselves nowhere, with bends, and no side below ``least`` [m].
+    def closes(self) -> NDArray[np.bool_]:
+        """Tell which outlines run round once and cross themselves nowhere, with bends and sides that can be told.
 
         They need not be convex.
         """
@@ -132,7 +135,7 @@ class Outlines:
         turn, (begin, end) = self.turns(), self.spans()
         once_round = np.abs(turn.sum(axis=1) - 2 * np.pi) < 1e-6
         bends = ((np.abs(turn) >= LEAST_BEND) & (np.abs(turn) <= MOST_BEND)).all(axis=1)
-        closed = once_round & bends & (end - begin >= least).all(axis=1)
+        closed = once_round & bends & (end - begin >= LEAST_STRETCH).all(axis=1)
         if closed.any():
             closed &= shapely.is_simple(shapely.linearrings(self.corners()))
         return closed
@@ -154,15 +157,34 @@ class Outlines:
             if (inwards[i] or inwards[j]) and min(map(len, halves)) > 2:
                 yield i, j, halves
 
-    @property
-    def of_two(self) -> bool:
-        """Whether the first outline may as well be that of two shapes with names that touch along a side of one.
+    def of_two(self, points: Floats, spread: float) -> bool:
+        """Whether the first outline may as well be that of two shapes with names that stand side by side.
 
-        Cut between two corners that bend inwards, each half is a triangle, a rectangle or a pentagon. A gap between
-        them that is narrower than neighbouring points are apart leaves no trace.
+        Cut between two corners that bend inwards, each half is a triangle, a rectangle or a pentagon, and no point,
+        shape (N, 2), metres, lies where a mouth between the two would be.
         """
         inwards = turns_of(self.corners()[0]) < 0
-        return any(inwards[i] and inwards[j] and all(map(_has_name, halves)) for i, j, halves in self.halves())
+        return any(
+            inwards[i] and inwards[j] and all(map(_has_name, halves)) and not self._filled(i, j, points, spread)
+            for i, j, halves in self.halves()
+        )
+
+    def _filled(self, i: int, j: int, points: Floats, spread: float) -> bool:
+        """Tell whether a point lies in the end of a mouth between corners i and j, and cannot come from beside it.
+
+        There the side that does not run along the mouth would end sooner: its point is too far from the other side to
+        be of that, and too near to be beyond a mouth.
+        """
+        corners, r, (normals,) = self.corners()[0], np.abs(self.distances(points)[0]), self._normals[:1]
+        rounding = CELL / 2 * np.abs(normals).sum(axis=0) + SIGMAS * noise_of(spread)
+        across = np.abs((corners[j] - corners[i]) @ normals)
+        for corner in (i, j):
+            beside, ends = sorted((corner - 1, corner), key=across.__getitem__)
+            between = (r[:, beside] > rounding[beside]) & (r[:, beside] < LEAST_MOUTH - rounding[beside])
+            near = np.hypot(*(points - corners[corner]).T) <= 2 * LEAST_MOUTH
+            if (between & near & (r[:, ends] <= rounding[ends])).any():
+                return True
+        return False
 
     @property
     def kind(self) -> Kind:

@@ -34,9 +34,9 @@ from ..segmentation import LEAST_GROUP, LINK, kmeans, link
 from ..shapes import turns_of
 from .candidates import MOST_POINTS
 from .choice import Choice, explained
-from .evidence import CERTAIN, NEARLY_ALL, joint_cost
+from .evidence import CERTAIN, INSIDE_COST, MOST_INSIDE, NEARLY_ALL, joint_cost
 from .outlines import Outlines
-from .scatter import NOWHERE, SIGMAS
+from .scatter import NOWHERE, SIGMAS, depth_of
 
 Explain = Callable[[Floats], Choice]
 
@@ -44,11 +44,9 @@ Explain = Callable[[Floats], Choice]
 MOST_WORK, WORK_OF_A_TRY = 100_000, 250
 
 MOST_ACROSS = 0.45  # m: the paper's largest rectangle is 0.424 m from corner to corner; wider pieces are of two shapes
-HULL_SPREADS, HULL_CELLS = 6.0, 0.002  # the hull runs along the outermost points: others lie up to so much inside [m]
 FINER_LINKS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0)  # a group is cut where it falls apart first, linked so much more finely
 MOST_JOINTS = 3  # ways to cut an outline between two corners
 JOINT_COST = 40.0  # two shapes seldom stand so close that nothing is seen between them
-INSIDE_HULL = 0.05  # share of points that may lie inside a hull which should be an outline
 
 
 @dataclass(frozen=True)
@@ -98,6 +96,7 @@ def regrouped(
     n_shapes: int | None = None,
     *,
     explain: Opinion | None = None,
+    lone: Floats | None = None,
 ) -> tuple[list[Choice], list[float]]:
     """Split and merge groups as long as that explains the points better, within a bound of work.
 
@@ -111,6 +110,8 @@ def regrouped(
         The number of groups to end with, when it is known.
     explain : Opinion, optional
         Explains (N, 2) points as a group; by ``explained`` if it is not given.
+    lone : array, shape (N, 2), optional
+        Points that were linked to none, metres.
 
     Returns
     -------
@@ -121,12 +122,35 @@ def regrouped(
         merged with a neighbour: twice the logarithm of the Bayes factor; infinite when none was in question.
     """
     explain, tried = explain or Opinion(partial(explained, spread=spread)), _Tried()
-    groups = list(groups)
+    groups = list(groups) if lone is None else _with_what_is_inside(list(groups), lone, explain, tried)
     if n_shapes is None or len(groups) < n_shapes:
         groups = _split_all(groups, spread, n_shapes, explain, tried)
     if n_shapes is None or len(groups) > n_shapes:
         groups = _merge_all(groups, spread, n_shapes, explain, tried)
     return groups, [_margin(g, groups, tried) for g in groups]
+
+
+def _with_what_is_inside(groups: list[Choice], lone: Floats, explain: Opinion, tried: _Tried) -> list[Choice]:
+    """Join open groups with the lone points and other groups inside their hulls, where that explains all better.
+
+    Of a notch few points are seen, and these are not linked to the others.
+    """
+    import shapely
+
+    for group in groups:
+        across = np.hypot(*np.ptp(group.points, axis=0))
+        if group not in groups or group.closed or across > MOST_ACROSS or not group.ranked or explain.bounded:
+            continue
+        inside = [g for g in groups if g is not group and shapely.contains_xy(group.hull, *g.points.T).all()]
+        strays = lone[shapely.contains_xy(group.hull, *lone.T)]
+        if inside or len(strays):
+            whole = explain(np.vstack([strays, *(g.points for g in [group, *inside])]))
+            of_strays = INSIDE_COST * min(len(strays), MOST_INSIDE) - 2 * len(strays) * float(np.log(NOWHERE))
+            gain = cost_of([whole]) - cost_of([group, *inside]) - of_strays
+            if gain < 0 and 2 * np.count_nonzero(whole.on_it[: len(strays)]) >= len(strays):
+                groups = [whole if g is group else g for g in groups if g not in inside]
+                tried.won_by[whole] = -gain
+    return groups
 
 
 def _margin(group: Choice, groups: list[Choice], tried: _Tried) -> float:
@@ -258,20 +282,14 @@ def _may_be_one(a: Choice, b: Choice, spread: float) -> bool:
 
     One of them must be open, and the points of both must lie along the hull of both.
     """
-    if (a.closed and b.closed) or len(a.points) + len(b.points) > MOST_POINTS or _apart(a, b) > MOST_ACROSS:
+    if (a.closed and b.closed) or len(a.points) + len(b.points) > MOST_POINTS:
         return False
     import shapely
 
-    hull = shapely.get_coordinates(shapely.linestrings(np.vstack([a.hull, b.hull])).convex_hull)
+    hull = shapely.get_coordinates(shapely.geometrycollections([a.hull, b.hull]).convex_hull)
     if np.hypot(*np.moveaxis(hull[:, None] - hull, 2, 0)).max() > MOST_ACROSS:
         return False
     edges = np.diff(hull, axis=0)  # clockwise: outwards is to the left
     outwards = np.column_stack([-edges[:, 1], edges[:, 0]]) / np.hypot(*edges.T)[:, None]
     depth = -(np.vstack([a.points, b.points]) @ outwards.T - (hull[:-1] * outwards).sum(axis=1)).max(axis=1)
-    return bool(np.mean(depth > HULL_SPREADS * spread + HULL_CELLS) <= INSIDE_HULL)
-
-
-def _apart(a: Choice, b: Choice) -> float:
-    """Return how far the boxes around two groups are apart, metres."""
-    gaps = a.hull.min(axis=0) - b.hull.max(axis=0), b.hull.min(axis=0) - a.hull.max(axis=0)
-    return float(np.max(gaps))
+    return bool(np.mean(depth <= 2 * depth_of(spread)) >= NEARLY_ALL)  # the hull runs along the outermost points

@@ -67,7 +67,21 @@ MUTANTS = (
         "LEAST_OF_CIRCLE = 0.3",
         DEVIATIONS,
     ),
+    Mutant(
+        "a side whose middle may be another's has no points of its own",
+        "robust/deviations.py",
+        "own &= own_points(figure, np.mean(figure.ends(), axis=0)[0], spread).diagonal()",
+        "",
+        DEVIATIONS,
+    ),
     # --- regroup ---
+    Mutant(
+        "what lies inside an open outline may be of its notch",
+        "robust/regroup.py",
+        "if gain < 0 and 2 *",
+        "if False and 2 *",
+        REGROUP,
+    ),
     Mutant(
         "the strays' cost of a group",
         "robust/regroup.py",
@@ -207,6 +221,13 @@ MUTANTS = (
         "while outline.angles.shape[1] > 3:",
         "while False:",
         ("test_unknown.py",),
+    ),
+    Mutant(
+        "a point in the end of a mouth says that there is none",
+        "robust/outlines.py",
+        "and not self._filled(i, j, points, spread)",
+        "",
+        ("test_outlines.py",),
     ),
     Mutant(
         "an outline crosses itself nowhere",
