@@ -43,6 +43,11 @@ def quoted(file: str | Path) -> str:
 PIP = "%pip" if IN_BROWSER else f"{quoted(sys.executable)} -m pip"
 
 
+def install_line(extra: str) -> str:
+    """Return what installs one of the package's extras, also where the package came from a folder."""
+    return f'{PIP} install "{DISTRIBUTION}[{extra}]"'
+
+
 @dataclass(frozen=True)
 class Finding:
     """One thing that was looked at: what, how it is, and what to do unless it is fine."""

@@ -49,7 +49,8 @@ KNOWS_ONLY = {
     "raycast": ("arguments", "shapes", "world"),  # exact rays
     "robust": ("arguments", "shapes", "segmentation", "ransac", "lines", "circles", "seen"),  # no grid, LiDAR, pipeline
     "space": ("arguments", "table", "themed", "palette", "segmentation", "ransac"),  # not the board
-    "formats": ("arguments", "shapes", "show", "world", "robot", "lidar", "measure", "found"),  # no pipeline
+    # no pipeline; ``installed`` for the line that adds an extra
+    "formats": ("arguments", "installed", "shapes", "show", "world", "robot", "lidar", "measure", "found"),
 }
 # Rooms that others must not know, though these stand above them; and rooms that nobody knows but these.
 KNOWS_NO = {"widgets": ("plots",), "scene": ("plots", "widgets"), "checks": ("plots", "widgets", "scene")}

@@ -9,6 +9,7 @@ from joblib.parallel import get_active_backend
 
 from primkit.__main__ import main
 from primkit.formats import save_world
+from primkit.installed import install_line
 from primkit.lidar import Lidar
 from primkit.pipeline import ROBUST
 from primkit.study import JOURNAL, Experiment, cluster, on_cluster, run_study
@@ -16,7 +17,7 @@ from primkit.study.many import in_parallel, perform_all
 from primkit.world import random_world
 from tests.helpers import exactly
 
-distributed = pytest.importorskip("distributed", reason=f"dask is absent: {cluster.INSTALL_DASK}")
+distributed = pytest.importorskip("distributed", reason=f"dask is absent: {install_line('cluster')}")
 psutil = pytest.importorskip("psutil")
 
 NOISY = Lidar(noise_std=0.002)
@@ -119,7 +120,7 @@ def test_a_cluster_without_workers_is_one_sentence():
 
 def test_without_dask_it_says_how_to_get_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "dask.distributed", None)
-    sentence = 'a cluster needs dask, which is not installed: pip install -e ".[cluster]"'
+    sentence = f"a cluster needs dask, which is not installed: {install_line('cluster')}"
     with pytest.raises(ValueError, match=exactly(sentence)), on_cluster("tcp://127.0.0.1:8786"):
         pass
 

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -165,6 +166,8 @@ def test_a_package_that_is_not_installed_is_named(capsys):
     told = capsys.readouterr().err
     assert told.startswith("primkit: no_such_package is not installed: run primkit doctor; ")
     assert told.endswith('-m pip install "primkit-lab[teach]"\n')
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    assert {"teach", "cluster", "ros"} <= set(extras)  # what install_line is asked for
     with pytest.raises(ModuleNotFoundError, match=r"primkit\.nowhere"):  # ours: an error in the kit itself
         exit_code(lambda: __import__("primkit.nowhere"))
 

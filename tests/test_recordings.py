@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 import primkit as pk
 from primkit.arguments import LikelyWrong
 from primkit.formats.bags import _matrix
+from primkit.installed import install_line
 from tests.filing import refusal, written
 from tests.recorded import BAGS, Bag, carmen_log, driven_bag, table, write_log
 
@@ -190,7 +191,7 @@ def test_what_is_no_rotation_is_refused_without_a_warning(component, told):
 def test_without_rosbags_one_sentence_says_so(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "rosbags", None)
     monkeypatch.setitem(sys.modules, "rosbags.rosbag1", None)
-    sentence = "a.bag: a bag needs rosbags, which is not installed: python -m pip install rosbags"
+    sentence = f"a.bag: a bag needs rosbags, which is not installed: {install_line('ros')}"
     assert refusal(pk.load_scans, written(tmp_path, b"", "a.bag")) == sentence
 
 

@@ -19,7 +19,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn
 
-from ..installed import DISTRIBUTION, PIP, Finding
+from ..installed import Finding, install_line
 from ..table import count
 
 # What the library's sentences call differently.
@@ -156,7 +156,7 @@ def exit_code(run: Callable[[], None]) -> int:
     except ModuleNotFoundError as error:
         if (error.name or __name__).partition(".")[0] == __name__.partition(".")[0]:
             raise
-        teachers = f'{PIP} install "{DISTRIBUTION}[teach]"'
+        teachers = install_line("teach")
         return _complain(f"{error.name} is not installed: run primkit doctor; what teachers need comes with {teachers}")
     except OSError as error:
         # Sentences from formats stand alone; the system's own come in parts.

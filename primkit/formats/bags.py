@@ -22,11 +22,11 @@ from typing import Any
 import numpy as np
 
 from ..arguments import Floats, doubt, limit, short
+from ..installed import install_line
 from .files import naming, size_of
 from .plans import moved, turned
 from .recordings import RECORDING_LIMIT, Sweep, check_topics, the_one
 
-INSTALL = "python -m pip install rosbags"
 SCAN, ODOMETRY = "sensor_msgs/msg/LaserScan", "nav_msgs/msg/Odometry"
 TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")  # today's, and that of the first ROS
 NEAR_IN_TIME = 0.5  # s: a robot drives half a metre in it; odometry comes ten times as often
@@ -68,7 +68,7 @@ def _messages(path: Path) -> Iterator[tuple[str, str, Any]]:
         from rosbags.rosbag2 import Reader as Reader2
         from rosbags.typesys import Stores, get_types_from_msg, get_typestore
     except ModuleNotFoundError:
-        raise ValueError(f"a bag needs rosbags, which is not installed: {INSTALL}") from None
+        raise ValueError(f"a bag needs rosbags, which is not installed: {install_line('ros')}") from None
     files = [path] if not path.is_dir() else sorted([*path.glob("*.db3"), *path.glob("*.mcap")])
     if not files:
         raise ValueError("must be a bag, or a folder with a .db3 or .mcap file, got neither")

@@ -27,7 +27,7 @@ from .solids import Solid
 VIEW_WIDTH, VIEW_RIM = 420, 12  # px
 SOLID_COLORS = {"sphere": BLUE, "cylinder": VERMILION, "box": GREEN}
 ROUND = np.linspace(0, 2 * np.pi, 49)
-SQUARE, TO_TOP = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0), (-1, -1, 0)]), np.array([0, 0, 1])
+BOX_RIM, TO_TOP = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0), (-1, -1, 0)]), np.array([0, 0, 1])
 MOST_DOTS = 4000
 
 
@@ -75,6 +75,6 @@ def net(solid: Solid) -> list[Floats]:
     if solid.kind == "sphere":
         lines = [circle[:, order] for order in ([0, 1, 2], [0, 2, 1], [2, 0, 1])]
     else:
-        rim, uprights = (circle, circle[:-1:6]) if solid.kind == "cylinder" else (SQUARE, SQUARE[:4])
+        rim, uprights = (circle, circle[:-1:6]) if solid.kind == "cylinder" else (BOX_RIM, BOX_RIM[:4])
         lines = [rim - TO_TOP, rim + TO_TOP, *(np.array([foot - TO_TOP, foot + TO_TOP]) for foot in uprights)]
     return [solid.center + (line * solid.half) @ solid.frame for line in lines]

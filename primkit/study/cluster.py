@@ -19,8 +19,9 @@ import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from ..installed import install_line
+
 ANSWER_TIMEOUT = 10.0  # s, for a scheduler to answer and for a first worker to join it
-INSTALL_DASK = 'pip install -e ".[cluster]"'
 
 
 @contextmanager
@@ -53,7 +54,7 @@ def on_cluster(address: str) -> Iterator[None]:
     try:
         from dask.distributed import Client
     except ModuleNotFoundError:
-        raise ValueError(f"a cluster needs dask, which is not installed: {INSTALL_DASK}") from None
+        raise ValueError(f"a cluster needs dask, which is not installed: {install_line('cluster')}") from None
     from joblib import parallel_config
 
     with _silence():  # while it tries, dask reports each attempt
