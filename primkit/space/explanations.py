@@ -28,7 +28,7 @@ LEAST_ON_FACE = 4  # returns without which a face was not seen
 FAR_BEHIND = 100.0  # in log likelihood of the starts: what is farther behind the best is not looked at again
 LOOKS_AT_ENDS = 2
 PERFECT, MOST_MISSED = 0.9, 0.03  # shares of a group's returns: explained at least, and passed through at most
-SUREST, MORE_THAN_RANGES = 1e-5, 0.05  # m: no end is known better; share of what ranges tell: less counts as nothing
+SUREST = 1e-5  # m: no end is known better
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,13 +165,14 @@ def told_by_ends(ends: dict[int, End], by_ranges: Floats) -> Told:
     The sum over an end, of mean m and variance v, knows the ranges and the hits and misses. The ranges, with
     information i, want the end where it was, m away from here; so hits and misses add p = 1 / v - i, and want
     m / (v p) - m. Where m is farther than the ranges could err, the end has left the returns that it was fitted to, and
-    the ranges want nothing there.
+    the ranges want nothing there. Where ranges tell more than half, hits and misses count as nothing: of a face that is
+    seen, they are those at its edges, where range and side of the edge go with the same noise.
     """
     matrix, vector = np.zeros((len(by_ranges), len(by_ranges))), np.zeros(len(by_ranges))
     for k, end in ends.items():
         precision = 1 / max(end.std, SUREST) ** 2
         more = precision - by_ranges[k]
-        if more > MORE_THAN_RANGES * by_ranges[k]:
+        if more > by_ranges[k]:
             believed = by_ranges[k] * end.growth**2 < UNLIKELY
             at = end.growth * (precision / more - 1) if believed else 0.0
             matrix += more * np.outer(end.slope, end.slope)
