@@ -40,6 +40,7 @@ html_theme_options = {
     "footer_end": [],
     "header_links_before_dropdown": 6,
     "back_to_top_button": False,
+    "show_toc_level": 2,  # what is shown by and by is not reached by keys
     "pygments_light_style": "a11y-high-contrast-light",
     "pygments_dark_style": "a11y-high-contrast-dark",
 }

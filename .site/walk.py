@@ -20,7 +20,7 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 WINDOWS = {"telephone": 390, "desk": 1440}  # px
 SECONDS = 2  # of processor time, from opening a lesson to the first slider that has moved
 NAMELESS = """() => [
-  ...document.querySelectorAll("main :is(img:not(a img), button, input, summary, a[href])"),
+  ...document.querySelectorAll("main :is(img:not(a img), button, input, summary, a[href], th)"),
 ].filter((one) => {
   const words = one.getAttribute("alt") ?? one.getAttribute("aria-label") ?? one.title;
   const label = one.labels?.[0]?.textContent ?? "";
