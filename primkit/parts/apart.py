@@ -31,14 +31,24 @@ from ..shapes import Circle, Kind, Polygon, Shape
 from ..table import count
 from .families import Part, Style
 from .fitting import Sample, outside_union
-from .openness import INSIDE, all_deepened, drawn_in, may_hide_corner, open_sizes, shown_places, shows_one_corner
+from .openness import (
+    INSIDE,
+    SIZE_STEP,
+    all_deepened,
+    drawn_in,
+    may_hide_corner,
+    open_sizes,
+    shown_places,
+    shows_one_corner,
+    size_slopes,
+)
 from .pieces import pieces_of, room_in
 from .search import PART_PRICE, Explanation, explanations, unseen
 
 LEAST_OUTLINE_POINTS = 30  # an outline of several shapes has a hundred
 NEAR_CELLS, NEAR_SPREADS = 1.5, 2.0  # how far a piece of outline may be off: its own error, and what points scatter
 AROUND_CORNERS = 0.005  # m: pieces end short of sharp corners
-CLEAR_MARGIN = 15.0  # of the margin: rivals are only those that were proposed, so that 10, very strong, is not enough
+CLEAR_MARGIN = 20.0  # of the margin: rivals are only those that were found, so that 10, very strong, is not enough
 LEAST_ON_IT, MOST_UNSEEN = 0.97, 0.01  # of the points, and m of the outline: else the parts do not explain them
 STYLES_OF_PARTS = ("paper", "free")
 
@@ -142,25 +152,29 @@ def take_apart(
 def _told(ranked: Sequence[Explanation], sample: Sample, frame: Frame) -> Apart:
     """Return the best explanation in metres, with what is open about it."""
     best = ranked[0]
-    deep, changed = all_deepened(best.parts, sample)
+    deep = all_deepened(best.parts, sample)
     parts = drawn_in(deep)
-    is_open = [open_sizes(deep, i) | freely for i, freely in enumerate(changed)]
+    middle = [part.with_numbers((part.x + far.x) / 2) for part, far in zip(parts, deep, strict=True)]
+    is_open = [
+        open_sizes(middle, i) | (np.abs(size_slopes(part) @ (far.x - part.x)) > SIZE_STEP)
+        for i, (part, far) in enumerate(zip(parts, deep, strict=True))
+    ]
     others: list[set[Kind]] = [set() for _ in parts]
-    for i, part in enumerate(deep):
-        if part.style == "free" and may_hide_corner(deep, i):
+    for i, part in enumerate(middle):
+        if part.style == "free" and may_hide_corner(middle, i):
             others[i].add("pentagon")
-        if shows_one_corner(deep, i):
+        if shows_one_corner(middle, i):
             others[i].add("triangle")
-    on_it = np.abs(outside_union(deep, sample.points)) <= SIGMAS * sample.spread + CELL
+    on_it = np.abs(outside_union(middle, sample.points)) <= SIGMAS * sample.spread + CELL
     # That fewest parts win is a wish, and no evidence: fewer parts of a rival do not speak for it.
     rivals = [e.cost + PART_PRICE * min(0, len(e.parts) - len(parts)) for e in ranked if e.kinds != best.kinds]
     return Apart(
         parts=tuple(_in_metres(part, frame) for part in parts),
-        joints=_joints(deep),
+        joints=_joints(middle),
         open_sizes=tuple(tuple(_by_dimension(*one)) for one in zip(parts, is_open, strict=True)),
         could_be=tuple(tuple(sorted(kinds)) for kinds in others),
         margin=float(min(rivals, default=np.inf) - best.cost),
-        fits=bool(on_it.mean() >= LEAST_ON_IT and unseen(deep, sample) <= MOST_UNSEEN),
+        fits=bool(on_it.mean() >= LEAST_ON_IT and unseen(middle, sample) <= MOST_UNSEEN),
     )
 
 

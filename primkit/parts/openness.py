@@ -40,6 +40,7 @@ MOST_CHANGE = 0.05  # m and rad: numbers change by no more
 SMALL = 1e-3  # what a change of the numbers costs beside one of the outline: the smallest change is taken
 SAME_AS_SEEN = 0.0015  # m: with what the steps between places leave
 STEPS_AGAIN = 5  # of fitting
+STICKS_OUT = 0.005  # m
 INSIDE = 0.003  # m from the outline: that deep, a stretch of hull is hidden
 
 
@@ -54,7 +55,7 @@ def open_sizes(parts: Sequence[Part], i: int) -> Bools:
     part, others = parts[i], [*parts[:i], *parts[i + 1 :]]
     shown = shown_places(part, others)
     n = len(part.x)
-    J, D = part.distance_slopes(shown), _size_slopes(part)
+    J, D = part.distance_slopes(shown), size_slopes(part)
     none, one = np.zeros((len(J), n)), -np.ones((len(J), 1))
     eye, zero = np.eye(n), np.zeros((n, 1))
     limits = np.block([[J, none, one], [-J, none, one], [eye, -eye, zero], [-eye, -eye, zero]])
@@ -72,14 +73,26 @@ def open_sizes(parts: Sequence[Part], i: int) -> Bools:
 
 
 def shown_places(part: Part, others: Sequence[Part], step: float = 0.002) -> Floats:
-    """Return places of a part's outline that lie outside the other parts, off its corners, shape (M, 2), metres."""
+    """Return places of a part's outline that lie outside the other parts, off its corners, shape (M, 2), metres.
+
+    A stretch that nowhere lies STICKS_OUT outside is none that shows: noise lets hidden corners stick out.
+    """
     ring = part.shape.outline(max(12, int(part.shape.perimeter / step)))
+    shown = np.ones(len(ring), dtype=bool)
+    if others:
+        out = outside_union(others, ring)
+        shown = out > SAME / 2
+        stretch = np.cumsum(np.diff(shown, prepend=shown[0]))
+        stretch[stretch == stretch[-1]] = 0 if shown[0] == shown[-1] else stretch[-1]
+        farthest = np.full(stretch.max() + 1, -np.inf)
+        np.maximum.at(farthest, stretch, out)
+        shown &= farthest[stretch] > STICKS_OUT
     if part.kind != "circle":
-        ring = ring[np.hypot(*(ring[:, None] - part.corners).transpose(2, 0, 1)).min(axis=1) > SAME / 2]
-    return ring[outside_union(others, ring) > SAME / 2] if others else ring
+        shown &= np.hypot(*(ring[:, None] - part.corners).transpose(2, 0, 1)).min(axis=1) > SAME / 2
+    return ring[shown]
 
 
-def _size_slopes(part: Part) -> Floats:
+def size_slopes(part: Part) -> Floats:
     """Return the derivatives of a part's sizes by its numbers, shape (S, n)."""
     if part.kind == "circle":
         return np.array([[0.0, 0.0, 1.0]])
@@ -97,19 +110,14 @@ def _apart(parts: Sequence[Part], changed: Sequence[Part]) -> float:
     return float(shapely.hausdorff_distance(one, other, densify=0.02))
 
 
-def all_deepened(parts: Sequence[Part], sample: Sample) -> tuple[list[Part], list[Bools]]:
-    """Return the parts with hidden sides deep in the others, and which sizes changed freely on the way.
-
-    Where a hidden side came to lie is chance: it may stick out of the outline by what points scatter.
-    """
+def all_deepened(parts: Sequence[Part], sample: Sample) -> list[Part]:
+    """Return the parts with hidden sides deep in the others."""
     deep = list(parts)
     for i, part in enumerate(parts):
         if others := [*deep[:i], *deep[i + 1 :]]:
             known = replace(sample, beside=sample.outside(others).min(axis=0))
             deep[i] = part.with_numbers(deepened(part.with_numbers(part.x[None]), known).x[0])
-    deep = fitted(deep, sample, STEPS_AGAIN)
-    changes = [_size_slopes(part) @ (new.x - part.x) for part, new in zip(parts, deep, strict=True)]
-    return deep, [np.abs(change) > SIZE_STEP for change in changes]
+    return fitted(deep, sample, STEPS_AGAIN)
 
 
 def drawn_in(parts: Sequence[Part]) -> list[Part]:
