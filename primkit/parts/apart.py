@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,16 +29,26 @@ from ..measure import CELL, Detection, Frame, Other
 from ..robust.scatter import SIGMAS, spread_of
 from ..shapes import Circle, Kind, Polygon, Shape
 from ..table import count
-from .covers import Explanation, explanations, unseen
 from .families import Part, Style
 from .fitting import Sample, outside_union
-from .openness import INSIDE, may_hide_corner, open_sizes, settled, shows_one_corner
-from .pieces import pieces_of
-from .proposals import proposals
+from .openness import (
+    INSIDE,
+    SIZE_STEP,
+    all_deepened,
+    drawn_in,
+    may_hide_corner,
+    open_sizes,
+    shown_places,
+    shows_one_corner,
+    size_slopes,
+)
+from .pieces import pieces_of, room_in
+from .search import PART_PRICE, Explanation, explanations, unseen
 
 LEAST_OUTLINE_POINTS = 30  # an outline of several shapes has a hundred
 NEAR_CELLS, NEAR_SPREADS = 1.5, 2.0  # how far a piece of outline may be off: its own error, and what points scatter
-CLEAR_MARGIN = 15.0  # of the margin: rivals are only those that were proposed, so that 10, very strong, is not enough
+AROUND_CORNERS = 0.005  # m: pieces end short of sharp corners
+CLEAR_MARGIN = 20.0  # of the margin: rivals are only those that were found, so that 10, very strong, is not enough
 LEAST_ON_IT, MOST_UNSEEN = 0.97, 0.01  # of the points, and m of the outline: else the parts do not explain them
 STYLES_OF_PARTS = ("paper", "free")
 
@@ -51,7 +62,7 @@ class Apart:
     parts : tuple of Circle and Polygon
         Metres, world frame.
     joints : tuple of (int, int, str)
-        Which parts meet, and how: ``"touch"`` or ``"overlap"``.
+        Which parts meet, and how: ``"touch"`` where that is enough, ``"overlap"`` where they must.
     open_sizes : tuple of tuple of bool
         For each part, which of its ``dimensions`` can change by more than 5 mm and the outline would be the same.
     could_be : tuple of tuple of str
@@ -130,44 +141,40 @@ def take_apart(
     middle = local.mean(axis=0)
     local = local - middle
     spread = spread_of(local) if spread is None else as_positive(spread, "spread") / frame.unit
-    sample = Sample(local, spread, labels)
-    ranked = _ranked(sample, style)
-    return _told(ranked, sample, replace(frame, origin=frame.metres(middle[None])[0])) if ranked else None
-
-
-def _ranked(sample: Sample, style: Style) -> list[Explanation]:
-    """Return the explanations of points around the origin, the best first."""
-    pieces = pieces_of(sample.points, sample.spread, sample.colors)
+    pieces = pieces_of(local, spread, labels)
     if pieces is None:
-        return []
-    near = NEAR_CELLS * CELL + NEAR_SPREADS * sample.spread
-    pool = [
-        part for color in sorted({piece.color for piece in pieces}) for part in proposals(pieces, near, style, color)
-    ]
-    along = [piece.places() for piece in pieces]
-    colors = np.repeat([piece.color for piece in pieces], [len(places) for places in along])
-    return explanations(pool, Sample(np.concatenate(along), sample.spread, colors), sample, near)
+        return None
+    sample = Sample(local, spread, labels, room=room_in(pieces, SIGMAS * spread + AROUND_CORNERS))
+    ranked = explanations(pieces, sample, style)
+    return _told(ranked, sample, replace(frame, origin=frame.metres(middle[None])[0])) if ranked else None
 
 
 def _told(ranked: Sequence[Explanation], sample: Sample, frame: Frame) -> Apart:
     """Return the best explanation in metres, with what is open about it."""
     best = ranked[0]
-    parts, pushed = settled(best.parts, sample)
+    deep = all_deepened(best.parts, sample)
+    parts = drawn_in(deep)
+    middle = [part.with_numbers((part.x + far.x) / 2) for part, far in zip(parts, deep, strict=True)]
+    is_open = [
+        open_sizes(middle, i) | (np.abs(size_slopes(part) @ (far.x - part.x)) > SIZE_STEP)
+        for i, (part, far) in enumerate(zip(parts, deep, strict=True))
+    ]
     others: list[set[Kind]] = [set() for _ in parts]
-    rival = min((e.evidence for e in ranked if e.kinds != best.kinds), default=np.inf)
-    for i, part in enumerate(parts):
-        if part.style == "free" and may_hide_corner(parts, i):
+    for i, part in enumerate(middle):
+        if part.style == "free" and may_hide_corner(middle, i):
             others[i].add("pentagon")
-        if shows_one_corner(parts, i):
+        if shows_one_corner(middle, i):
             others[i].add("triangle")
-    on_it = np.abs(outside_union(parts, sample.points)) <= SIGMAS * sample.spread + CELL
+    on_it = np.abs(outside_union(middle, sample.points)) <= SIGMAS * sample.spread + CELL
+    # That fewest parts win is a wish, and no evidence: fewer parts of a rival do not speak for it.
+    rivals = [e.cost + PART_PRICE * min(0, len(e.parts) - len(parts)) for e in ranked if e.kinds != best.kinds]
     return Apart(
         parts=tuple(_in_metres(part, frame) for part in parts),
-        joints=_joints(parts),
-        open_sizes=tuple(tuple(_by_dimension(part, open_sizes(parts, i) | pushed[i])) for i, part in enumerate(parts)),
+        joints=_joints(middle),
+        open_sizes=tuple(tuple(_by_dimension(*one)) for one in zip(parts, is_open, strict=True)),
         could_be=tuple(tuple(sorted(kinds)) for kinds in others),
-        margin=float(rival - best.evidence),
-        fits=bool(on_it.mean() >= LEAST_ON_IT and unseen(parts, sample.points) <= MOST_UNSEEN),
+        margin=float(min(rivals, default=np.inf) - best.cost),
+        fits=bool(on_it.mean() >= LEAST_ON_IT and unseen(middle, sample) <= MOST_UNSEEN),
     )
 
 
@@ -185,14 +192,16 @@ def _by_dimension(part: Part, sizes: Bools) -> list[bool]:
 
 
 def _joints(parts: Sequence[Part]) -> tuple[tuple[int, int, str], ...]:
-    """Return which parts meet, and whether they only touch."""
+    """Return which parts meet, and whether they need more than touch: what a part shows is all that it must have."""
     import shapely
 
-    solid = [part.shape.to_shapely().buffer(INSIDE / 2) for part in parts]
-    meets = []
-    for i, a in enumerate(solid):
-        for j in range(i + 1, len(solid)):
-            both = shapely.intersection(a, solid[j])
-            if not both.is_empty:
-                meets.append((i, j, "touch" if both.buffer(-INSIDE).is_empty else "overlap"))
-    return tuple(meets)
+    others = [[*parts[:i], *parts[i + 1 :]] for i in range(len(parts))]
+    shown = [
+        part.shape.to_shapely() if part.kind == "circle" else shapely.MultiPoint(shown_places(part, rest)).convex_hull
+        for part, rest in zip(parts, others, strict=True)
+    ]
+    return tuple(
+        (i, j, "touch" if shapely.intersection(shown[i], shown[j]).buffer(-INSIDE).is_empty else "overlap")
+        for i, j in combinations(range(len(parts)), 2)
+        if parts[i].shape.to_shapely().distance(parts[j].shape.to_shapely()) <= INSIDE
+    )

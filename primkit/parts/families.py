@@ -10,14 +10,14 @@ triangle   middle of the base, turn, base and     its three corners
 pentagon   centre, turn, radius: it is regular    its five corners
 =========  =====================================  ====================
 
-In:  a kind, a style and numbers, shape (n,): metres and radians.
-Out: corners, shape (K, 2), metres, counter-clockwise; signed distances of points, and their derivatives.
+In:  a kind, a style and numbers, shape (n,), or of many shapes of the kind at once (M, n): metres and radians.
+Out: corners, shape (..., K, 2), metres, counter-clockwise; signed distances of points, and their derivatives.
 
 >>> square = Part("rectangle", np.array([0.1, 0.0, 0.0, 0.2, 0.2]))
 >>> square.corners.tolist()
 [[0.0, -0.1], [0.2, -0.1], [0.2, 0.1], [0.0, 0.1]]
->>> distance, slope = square.distance(np.array([[0.25, 0.0]]))
->>> distance.round(6).tolist(), (slope.round(6) + 0.0).tolist()  # farther right or wider: nearer to the point
+>>> place = np.array([[0.25, 0.0]])
+>>> square.outside(place).round(6).tolist(), (square.distance_slopes(place).round(6) + 0.0).tolist()  # to the right
 ([0.05], [[-1.0, 0.0, 0.0, -0.5, 0.0]])
 """
 
@@ -29,24 +29,31 @@ from typing import Literal
 
 import numpy as np
 
-from ..arguments import Floats
+from ..arguments import Bools, Floats
 from ..shapes import Circle, Kind, Polygon, Shape
 
 Style = Literal["paper", "free"]
-STEP = 1e-6  # m and rad: of the derivatives of corners
 FIFTHS = np.arange(5) * (2 * np.pi / 5)
-LEAST_BEND_OF_PART, LEAST_SIDE_OF_PART = np.radians(8), 0.012  # rad and m
+LEAST_BEND_OF_PART, MOST_BEND_OF_PART = np.radians((12, 155))  # at a corner: flatter it cannot be told, sharper hardly
+LEAST_SIDE_OF_PART, MOST_RADIUS_OF_PART = 0.012, 0.3  # m
 CORNERS_OF: dict[str, int] = {"circle": 0, "triangle": 3, "rectangle": 4, "pentagon": 5}
+AFTER, BEFORE = ({k: np.roll(np.arange(k), by) for k in CORNERS_OF.values()} for by in (-1, 1))
+# Corners of a part that is not turned: the sum of its sizes times these, shape (sizes, K, 2).
+SIZED = {
+    "rectangle": np.array([[(-0.5, 0), (0.5, 0), (0.5, 0), (-0.5, 0)], [(0, -0.5), (0, -0.5), (0, 0.5), (0, 0.5)]]),
+    "triangle": np.array([[(-0.5, 0), (0.5, 0), (0, 0)], [(0, 0), (0, 0), (0, 1)]]),
+    "pentagon": np.stack([np.cos(FIFTHS), np.sin(FIFTHS)], axis=1)[None],
+}
 
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A shape of a kind and a style, by its numbers.
+    """A shape of a kind and a style, by its numbers; or many of them at once.
 
     Parameters
     ----------
     kind : {"circle", "triangle", "rectangle", "pentagon"}
-    x : array, shape (n,)
+    x : array, shape (n,) or (M, n)
         Its numbers, metres and radians: see the module's table.
     style : {"paper", "free"}
     color : int
@@ -62,78 +69,102 @@ class Part:
         """Return the part with other numbers."""
         return Part(self.kind, x, self.style, self.color)
 
-    @cached_property
-    def corners(self) -> Floats:
-        """Corners, shape (K, 2), metres, counter-clockwise; none of a circle."""
-        x = self.x
-        if self.kind == "circle":
-            return np.empty((0, 2))
-        if self.kind == "rectangle":
-            at = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (x[3:] / 2)
-        elif self.style == "free":
-            return x.reshape(-1, 2)
-        elif self.kind == "triangle":
-            at = np.array([(-x[3] / 2, 0.0), (x[3] / 2, 0.0), (0.0, x[4])])
-        else:
-            at = x[3] * np.column_stack([np.cos(FIFTHS), np.sin(FIFTHS)])
-        c, s = np.cos(x[2]), np.sin(x[2])
-        return x[:2] + at @ np.array([[c, s], [-s, c]])
-
-    @cached_property
-    def slopes(self) -> Floats:
-        """Derivatives of the corners, shape (K, 2, n)."""
-        if self.style == "free" and self.kind in ("triangle", "pentagon"):
-            return np.eye(len(self.x)).reshape(-1, 2, len(self.x))
-        steps = STEP * np.eye(len(self.x))
-        ends = [(self.with_numbers(self.x + s).corners, self.with_numbers(self.x - s).corners) for s in steps]
-        return np.stack([(a - b) / (2 * STEP) for a, b in ends], axis=-1)
-
-    @property
-    def normals(self) -> Floats:
-        """Unit normals of the sides, outwards, shape (K, 2)."""
-        along = np.roll(self.corners, -1, axis=0) - self.corners
-        along /= np.maximum(np.hypot(*along.T), 1e-12)[:, None]
-        return np.column_stack([along[:, 1], -along[:, 0]])
-
-    @property
-    def sound(self) -> bool:
-        """Whether it is a shape at all: convex, none of its sides and corners too small to be told."""
-        if self.kind == "circle":
-            return bool(0.005 < self.x[2] < 10)
-        along = np.roll(self.corners, -1, axis=0) - self.corners
-        before = np.roll(along, 1, axis=0)
-        turn = np.arctan2(before[:, 0] * along[:, 1] - before[:, 1] * along[:, 0], (before * along).sum(axis=1))
-        convex = (turn > LEAST_BEND_OF_PART).all() and abs(turn.sum() - 2 * np.pi) < 1e-6
-        return bool(convex and (np.hypot(*along.T) > LEAST_SIDE_OF_PART).all())
+    def freed(self) -> Part:
+        """Return the part; a triangle by its corners, in the style "free"."""
+        return Part("triangle", self.corners.ravel(), "free", self.color) if self.kind == "triangle" else self
 
     @property
     def shape(self) -> Shape:
         """The shape, metres."""
         return Circle(self.x[:2], abs(self.x[2])) if self.kind == "circle" else Polygon(self.corners)
 
-    def freed(self) -> Part:
-        """Return the part; a triangle by its corners, in the style "free"."""
-        return Part("triangle", self.corners.ravel(), "free", self.color) if self.kind == "triangle" else self
+    @property
+    def _by_corners(self) -> bool:
+        """Whether its numbers are its corners."""
+        return self.style == "free" and self.kind in ("triangle", "pentagon")
+
+    def _turned(self) -> Floats:
+        """Return what the corners' offsets are multiplied by, shape (..., 2, 2)."""
+        c, s = np.cos(self.x[..., 2]), np.sin(self.x[..., 2])
+        return np.stack([c, s, -s, c], axis=-1).reshape(*c.shape, 2, 2)
+
+    @cached_property
+    def corners(self) -> Floats:
+        """Corners, shape (..., K, 2), metres, counter-clockwise; none of a circle."""
+        x, lead = self.x, self.x.shape[:-1]
+        if self.kind == "circle":
+            return np.empty((*lead, 0, 2))
+        if self._by_corners:
+            return x.reshape(*lead, CORNERS_OF[self.kind], 2)
+        return x[..., None, :2] + np.tensordot(x[..., 3:], SIZED[self.kind], axes=1) @ self._turned()
+
+    @property
+    def slopes(self) -> Floats:
+        """Derivatives of the corners, shape (..., K, 2, n)."""
+        n, k, lead = self.x.shape[-1], CORNERS_OF[self.kind], self.x.shape[:-1]
+        if self._by_corners:
+            return np.broadcast_to(np.eye(n).reshape(k, 2, n), (*lead, k, 2, n))
+        found = np.zeros((*lead, k, 2, n))
+        away = self.corners - self.x[..., None, :2]
+        found[..., 0, 0] = found[..., 1, 1] = 1.0
+        found[..., 0, 2], found[..., 1, 2] = -away[..., 1], away[..., 0]
+        found[..., 3:] = np.moveaxis(SIZED[self.kind] @ self._turned()[..., None, :, :], -3, -1)
+        return found
+
+    @cached_property
+    def lines(self) -> tuple[Floats, Floats]:
+        """Unit normals of the sides, outwards, shape (..., K, 2), and where along them the sides lie, (..., K)."""
+        corners = self.corners
+        along = corners[..., AFTER[corners.shape[-2]], :] - corners
+        length = np.maximum(np.hypot(along[..., 0], along[..., 1]), 1e-12)
+        normals = np.stack([along[..., 1], -along[..., 0]], axis=-1) / length[..., None]
+        return normals, (normals * corners).sum(axis=-1)
+
+    @property
+    def pushes(self) -> Floats:
+        """Changes of the numbers that push one side outwards by a metre, and the others least, shape (..., K, n)."""
+        if self.kind == "circle":
+            return np.broadcast_to([0.0, 0.0, 1.0], (*self.x.shape[:-1], 1, 3))
+        (normals, _), slopes, k = self.lines, self.slopes, CORNERS_OF[self.kind]
+        ends = [(normals[..., None, :] @ some)[..., 0, :] for some in (slopes, slopes[..., AFTER[k], :, :])]
+        inverse = np.linalg.pinv(np.concatenate(ends, axis=-2), rcond=1e-6)
+        return np.swapaxes(inverse[..., :k] + inverse[..., k:], -1, -2)
+
+    @property
+    def sound(self) -> Bools:
+        """Whether it is a shape at all: convex, none of its sides and corners too small to be told."""
+        if self.kind == "circle":
+            return (self.x[..., 2] > 0.005) & (self.x[..., 2] < MOST_RADIUS_OF_PART)
+        corners = self.corners
+        along = corners[..., AFTER[corners.shape[-2]], :] - corners
+        before = along[..., BEFORE[corners.shape[-2]], :]
+        cross = before[..., 0] * along[..., 1] - before[..., 1] * along[..., 0]
+        turn = np.arctan2(cross, (before * along).sum(axis=-1))
+        bends = (turn > LEAST_BEND_OF_PART).all(axis=-1) & (turn < MOST_BEND_OF_PART).all(axis=-1)
+        long = (np.hypot(along[..., 0], along[..., 1]) > LEAST_SIDE_OF_PART).all(axis=-1)
+        return bends & long & (np.abs(turn.sum(axis=-1) - 2 * np.pi) < 1e-6)
 
     def outside(self, points: Floats) -> Floats:
-        """Return how far each point lies outside the line of the side that it is farthest outside of, shape (N,)."""
+        """Return how far points lie outside the line of the side that each is farthest outside of, shape (..., N)."""
         if self.kind == "circle":
-            return np.hypot(*(points - self.x[:2]).T) - self.x[2]
-        normals = self.normals
-        return (points @ normals.T - (normals * self.corners).sum(axis=1)).max(axis=1)
+            x, y, radius = np.moveaxis(self.x, -1, 0)[..., None]
+            return np.hypot(points[:, 0] - x, points[:, 1] - y) - radius
+        normals, offsets = self.lines
+        return (normals @ points.T - offsets[..., None]).max(axis=-2)
 
-    def distance(self, points: Floats) -> tuple[Floats, Floats]:
-        """Return ``outside``, shape (N,), and its derivatives by the numbers, shape (N, n)."""
+    def distance_slopes(self, points: Floats) -> Floats:
+        """Return the derivatives of ``outside`` by the numbers, shape (..., N, n)."""
         if self.kind == "circle":
-            away = points - self.x[:2]
-            length = np.maximum(np.hypot(*away.T), 1e-12)
-            return length - self.x[2], np.column_stack([-away / length[:, None], -np.ones(len(points))])
-        normals, corners, slopes = self.normals, self.corners, self.slopes
-        out = points @ normals.T - (normals * corners).sum(axis=1)
-        side, row = out.argmax(axis=1), np.arange(len(points))
-        after = (side + 1) % len(corners)
-        along = corners[after] - corners[side]
-        share = ((points - corners[side]) * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-12)
-        n, share = normals[side], np.clip(share, 0.0, 1.0)
-        at = np.einsum("pc,pcn->pn", n, slopes[side]) * (1 - share)[:, None]
-        return out[row, side], -(at + np.einsum("pc,pcn->pn", n, slopes[after]) * share[:, None])
+            away = self.x[..., None, :2] - points
+            length = np.maximum(np.hypot(away[..., 0], away[..., 1]), 1e-12)
+            return np.concatenate([away / length[..., None], np.full((*length.shape, 1), -1.0)], axis=-1)
+        (normals, offsets), corners, slopes = self.lines, self.corners, self.slopes
+        after = AFTER[corners.shape[-2]]
+        side = (normals @ points.T - offsets[..., None]).argmax(axis=-2)[..., None]
+        along = corners[..., after, :] - corners
+        along /= np.maximum((along**2).sum(axis=-1), 1e-12)[..., None]
+        begin = np.take_along_axis((along * corners).sum(axis=-1)[..., None], side, axis=-2)
+        share = np.clip((points * np.take_along_axis(along, side, axis=-2)).sum(axis=-1)[..., None] - begin, 0.0, 1.0)
+        of_ends = [(normals[..., None, :] @ ends)[..., 0, :] for ends in (slopes, slopes[..., after, :, :])]
+        first, last = (np.take_along_axis(ends, side, axis=-2) for ends in of_ends)
+        return -first * (1 - share) - last * share

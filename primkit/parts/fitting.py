@@ -20,36 +20,61 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from ..arguments import Floats, Ints
-from ..robust.scatter import scatter
+from ..robust.scatter import CELL, scatter
 from .families import Part
 
 STEPS = 12
-DAMPING = 1e-3  # of the mean information of a number
+WORTH_A_STEP = 0.1  # of the cost
+OUTWARDS = (0.008, 0.016, 0.03, 0.06)  # m by which a side is pushed out, on and on while it is free
+FREE_COST = 3.0  # what is no more costs nothing
+DAMPING, MOST_DAMPING = 1e-3, 1e3  # of the mean information of a number
+LEAST_PULL, PULLED = 0.02, 0.01  # what lies off pulls a little; m, if it is as near as this
 STRAY = 0.02  # of points that come from nowhere, spread evenly over STRAY_WIDTH metres across the outline
 STRAY_WIDTH = 0.2
+NOWHERE_ACROSS = STRAY / STRAY_WIDTH / (1 - STRAY)  # their density, as one of the others
 
 
 @dataclass(frozen=True, eq=False)
 class Sample:
     """Points on an outline, shape (N, 2), metres; how far they spread from it, metres; and the colour of each, or None.
 
-    Colours are numbers, shape (N,), -1 for unknown. A point belongs to no part of another colour.
+    Colours are numbers, shape (N,), -1 for unknown. A point belongs to no part of another colour. ``beside``, shape
+    (N,), metres: how far the points lie outside of other parts, which are known and stay. ``room``: what no corner of a
+    hidden side leaves, a shapely polygon.
     """
 
     points: Floats
     spread: float
     colors: Ints | None = None
+    beside: Floats | float = np.inf
+    room: Any = None
 
-    def own(self, parts: Sequence[Part], distances: Floats) -> Floats:
-        """Return distances of the points from the parts, shape (P, N), with those from parts of other colours far."""
+    @cached_property
+    def tree(self) -> Any:
+        """The points in a tree, to find the nearest."""
+        from scipy.spatial import cKDTree
+
+        return cKDTree(self.points)
+
+    @property
+    def known_colors(self) -> list[int]:
+        """The numbers of the colours of parts: -1 alone where none is known."""
+        return [-1] if self.colors is None else np.unique(self.colors[self.colors >= 0]).tolist() or [-1]
+
+    def outside(self, parts: Sequence[Part]) -> Floats:
+        """Return how far the points lie outside of each part, shape (P, N), metres; of other colours: far, or deep."""
+        distances = np.array([part.outside(self.points) for part in parts])
         if self.colors is None:
             return distances
-        of_parts = np.array([part.color for part in parts])[:, None]
-        return np.where((of_parts != self.colors) & (of_parts >= 0) & (self.colors >= 0), STRAY_WIDTH, distances)
+        of_parts = np.array([part.color for part in parts]).reshape(-1, *[1] * (distances.ndim - 1))
+        other = (of_parts != self.colors) & (of_parts >= 0) & (self.colors >= 0)
+        return np.where(other, np.where(distances < CELL, -STRAY_WIDTH, STRAY_WIDTH), distances)
 
 
 def outside_union(parts: Sequence[Part], points: Floats) -> Floats:
@@ -59,44 +84,107 @@ def outside_union(parts: Sequence[Part], points: Floats) -> Floats:
 
 def cost_of(parts: Sequence[Part], sample: Sample) -> float:
     """Return -2 ln of the likelihood of the points, in units of a point right on the outline."""
-    distance = sample.own(parts, np.array([part.outside(sample.points) for part in parts])).min(axis=0)
-    density = scatter(distance, sample.spread)[0]
-    best = scatter(np.zeros(1), sample.spread)[0][0]
-    return float(-2 * np.log((STRAY / STRAY_WIDTH + (1 - STRAY) * density) / best).sum())
+    return float(cost_at(sample.outside(parts).min(axis=0), sample))
+
+
+def cost_of_each(parts: Part, sample: Sample) -> Floats:
+    """Return the cost of each of many parts of one kind, alone, shape (M,)."""
+    return cost_at(sample.outside([parts])[0], sample)
+
+
+def cost_at(distance: Floats, sample: Sample) -> Floats:
+    """Return the cost of the points at these distances from the outline, shape (..., N) -> (...)."""
+    on_it = scatter(np.zeros(1), sample.spread)[0]
+    density = scatter(np.minimum(distance, sample.beside), sample.spread)[0]
+    return -2 * np.log((NOWHERE_ACROSS + density) / on_it).sum(axis=-1)
 
 
 def fitted(parts: Sequence[Part], sample: Sample, steps: int = STEPS) -> list[Part]:
     """Return the parts with the numbers that explain the points best, near those that they have."""
-    best, cost, damping = list(parts), cost_of(parts, sample), DAMPING
+    best, damping, ends = list(parts), DAMPING, np.cumsum([len(part.x) for part in parts])
+    distances = sample.outside(best)
+    cost, fresh = float(cost_at(distances.min(axis=0), sample)), True
     for _ in range(steps):
-        information, slope = _normal_equations(best, sample)
-        ridge = damping * np.maximum(np.diag(information), information.diagonal().mean())
-        step = np.linalg.solve(information + np.diag(ridge), -slope)
-        at = np.split(step, np.cumsum([len(part.x) for part in best])[:-1])
-        tried = [part.with_numbers(part.x + d) for part, d in zip(best, at, strict=True)]
-        new = cost_of(tried, sample) if all(part.sound for part in tried) else np.inf
-        if new < cost:
-            settled = cost - new < 1e-3
-            best, cost, damping = tried, new, damping / 3
+        if fresh:
+            information, slope = np.zeros((ends[-1], ends[-1])), np.zeros(ends[-1])
+            owner, weight = distances.argmin(axis=0), _weights(distances.min(axis=0), sample)
+            for i, (part, last) in enumerate(zip(best, ends, strict=True)):
+                own = np.flatnonzero((owner == i) & (weight > 0))
+                some = slice(last - len(part.x), last)
+                slopes = part.distance_slopes(sample.points[own])
+                weighted = slopes.T * weight[own]
+                information[some, some], slope[some] = weighted @ slopes, weighted @ distances[i, own]
+        step = _step(information, slope, np.array(damping))
+        tried = [part.with_numbers(part.x + d) for part, d in zip(best, np.split(step, ends[:-1]), strict=True)]
+        moved = sample.outside(tried)
+        new = float(cost_at(moved.min(axis=0), sample)) if all(part.sound for part in tried) else np.inf
+        fresh = bool(new < cost)
+        if fresh:
+            settled = cost - new < WORTH_A_STEP
+            best, distances, cost, damping = tried, moved, new, damping / 3
             if settled:
                 break
-        else:
-            damping *= 10
-            if damping > 1e3:
-                break
+        elif (damping := damping * 10) > MOST_DAMPING:
+            break
     return best
 
 
-def _normal_equations(parts: Sequence[Part], sample: Sample) -> tuple[Floats, Floats]:
-    """Return J' W J and J' W r of all numbers, shape (n, n) and (n,)."""
-    points, spread = sample.points, sample.spread
-    both = [part.distance(points) for part in parts]
-    r = sample.own(parts, np.array([distance for distance, _ in both]))
-    owner, row = r.argmin(axis=0), np.arange(len(points))
-    slopes = np.concatenate([np.where((owner == i)[:, None], slope, 0.0) for i, (_, slope) in enumerate(both)], axis=1)
-    least = r[owner, row]
-    density, told = scatter(least, spread)
-    weight = told * (1 - STRAY) * density / (STRAY / STRAY_WIDTH + (1 - STRAY) * density) / spread**2
-    weight = np.maximum(weight, 0.02 / spread**2 * (np.abs(least) < 0.01))  # what lies off pulls, a little
-    weighted = slopes * weight[:, None]
-    return weighted.T @ slopes, weighted.T @ least
+def fitted_each(parts: Part, sample: Sample, steps: int) -> Part:
+    """Return many parts of one kind, numbers of shape (M, n), each fitted for itself.
+
+    ``sample.beside`` may differ from part to part, shape (M, N).
+    """
+    damping = np.full(len(parts.x), DAMPING)
+    distance = sample.outside([parts])[0]
+    cost = cost_at(distance, sample)
+    for _ in range(steps):
+        slopes = parts.distance_slopes(sample.points)
+        weighted = np.swapaxes(slopes * _weights(distance, sample)[..., None], 1, 2)
+        step = _step(weighted @ slopes, (weighted @ distance[..., None])[..., 0], damping)
+        tried = parts.with_numbers(parts.x + step)
+        moved = sample.outside([tried])[0]
+        new = np.where(tried.sound, cost_at(moved, sample), np.inf)
+        better = new < cost
+        parts = parts.with_numbers(np.where(better[:, None], tried.x, parts.x))
+        distance, cost = np.where(better[:, None], moved, distance), np.where(better, new, cost)
+        damping = np.where(better, damping / 3, damping * 10)
+    return parts
+
+
+def deepened(parts: Part, sample: Sample) -> Part:
+    """Return many parts of one kind with each side pushed out as far as that is free; as ``fitted_each``.
+
+    Where a side is hidden, the points tell only that it is deep enough: so it comes to lie deep in other parts.
+    """
+    import shapely
+
+    if parts.kind == "circle":
+        return parts
+    most = cost_of_each(parts, sample) + FREE_COST
+    for way in np.moveaxis(parts.pushes, 1, 0):
+        free = np.ones(len(way), dtype=bool)
+        for step in OUTWARDS:
+            tried = parts.with_numbers(parts.x + step * way)
+            inside = (
+                shapely.contains_xy(sample.room, *np.moveaxis(tried.corners, -1, 0)).all(axis=1)
+                if sample.room
+                else True
+            )
+            free &= tried.sound & inside & (cost_of_each(tried, sample) <= most)
+            parts = parts.with_numbers(np.where(free[:, None], tried.x, parts.x))
+    return parts
+
+
+def _weights(distance: Floats, sample: Sample) -> Floats:
+    """Return how much points at these distances tell about the outline, of the shape of the distances, 1/m^2."""
+    density, told = scatter(distance, sample.spread)
+    weight = told * density / (NOWHERE_ACROSS + density)
+    weight = np.maximum(weight, LEAST_PULL * (np.abs(distance) < PULLED)) / sample.spread**2
+    return np.where(distance < sample.beside, weight, 0.0)
+
+
+def _step(information: Floats, slope: Floats, damping: Floats) -> Floats:
+    """Return the damped step against the slope, shape (..., n)."""
+    diagonal = np.diagonal(information, axis1=-2, axis2=-1)
+    ridge = damping[..., None] * (1 + np.maximum(diagonal, diagonal.mean(axis=-1, keepdims=True)))
+    return np.linalg.solve(information + ridge[..., None] * np.eye(slope.shape[-1]), -slope[..., None])[..., 0]

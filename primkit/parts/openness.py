@@ -25,20 +25,22 @@ Out: for each part, which of its sizes are open; and how much of its hull hides 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from ..arguments import Bools, Floats
 from ..random_shapes import LEAST_FREE_SIDE
-from .covers import full_cost, outline_of
 from .families import Part
-from .fitting import Sample, fitted, outside_union
+from .fitting import Sample, deepened, fitted, outside_union
+from .search import outline_of
 
 SIZE_STEP, SAME = 0.006, 0.001  # m: sizes that differ by more are different, outlines that differ by less are the same
 MOST_CHANGE = 0.05  # m and rad: numbers change by no more
 SMALL = 1e-3  # what a change of the numbers costs beside one of the outline: the smallest change is taken
-PUSH, WORTH_A_FIT, AS_GOOD, STEPS_AGAIN = 0.012, 150.0, 2.0, 5  # m; costs, and steps of fitting
-ROUGHLY = 0.006  # m between two outlines that may both be a little off
+SAME_AS_SEEN = 0.0015  # m: with what the steps between places leave
+STEPS_AGAIN = 5  # of fitting
+STICKS_OUT = 0.005  # m
 INSIDE = 0.003  # m from the outline: that deep, a stretch of hull is hidden
 
 
@@ -53,33 +55,44 @@ def open_sizes(parts: Sequence[Part], i: int) -> Bools:
     part, others = parts[i], [*parts[:i], *parts[i + 1 :]]
     shown = shown_places(part, others)
     n = len(part.x)
-    J, D = part.distance(shown)[1], _size_slopes(part)
+    J, D = part.distance_slopes(shown), size_slopes(part)
     none, one = np.zeros((len(J), n)), -np.ones((len(J), 1))
     eye, zero = np.eye(n), np.zeros((n, 1))
     limits = np.block([[J, none, one], [-J, none, one], [eye, -eye, zero], [-eye, -eye, zero]])
     price = np.concatenate([np.zeros(n), np.full(n, SMALL), [1.0]])
     bounds = [(-MOST_CHANGE, MOST_CHANGE)] * n + [(0, None)] * (n + 1)
     is_open = np.zeros(len(D), dtype=bool)
-    before = outline_of(parts)
     for k, slope in enumerate(D):
         for step in (SIZE_STEP, -SIZE_STEP):
             equal = np.concatenate([slope, np.zeros(n + 1)])[None]
             best = linprog(price, limits, np.zeros(len(limits)), equal, [step], bounds)
             if best.status == 0 and best.x[-1] <= SAME:
                 changed = part.with_numbers(part.x + best.x[:n])
-                is_open[k] |= changed.sound and _same_outline(before, parts, [*others, changed], 1.5 * SAME)
+                is_open[k] |= changed.sound and (_apart(parts, [*others, changed]) <= SAME_AS_SEEN)
     return is_open
 
 
 def shown_places(part: Part, others: Sequence[Part], step: float = 0.002) -> Floats:
-    """Return places of a part's outline that lie outside the other parts, off its corners, shape (M, 2), metres."""
+    """Return places of a part's outline that lie outside the other parts, off its corners, shape (M, 2), metres.
+
+    A stretch that nowhere lies STICKS_OUT outside is none that shows: noise lets hidden corners stick out.
+    """
     ring = part.shape.outline(max(12, int(part.shape.perimeter / step)))
+    shown = np.ones(len(ring), dtype=bool)
+    if others:
+        out = outside_union(others, ring)
+        shown = out > SAME / 2
+        stretch = np.cumsum(np.diff(shown, prepend=shown[0]))
+        stretch[stretch == stretch[-1]] = 0 if shown[0] == shown[-1] else stretch[-1]
+        farthest = np.full(stretch.max() + 1, -np.inf)
+        np.maximum.at(farthest, stretch, out)
+        shown &= farthest[stretch] > STICKS_OUT
     if part.kind != "circle":
-        ring = ring[np.hypot(*(ring[:, None] - part.corners).transpose(2, 0, 1)).min(axis=1) > SAME / 2]
-    return ring[outside_union(others, ring) > SAME] if others else ring
+        shown &= np.hypot(*(ring[:, None] - part.corners).transpose(2, 0, 1)).min(axis=1) > SAME / 2
+    return ring[shown]
 
 
-def _size_slopes(part: Part) -> Floats:
+def size_slopes(part: Part) -> Floats:
     """Return the derivatives of a part's sizes by its numbers, shape (S, n)."""
     if part.kind == "circle":
         return np.array([[0.0, 0.0, 1.0]])
@@ -89,47 +102,36 @@ def _size_slopes(part: Part) -> Floats:
     return slopes[:2] if part.kind == "rectangle" else slopes
 
 
-def _same_outline(before: Floats, parts: Sequence[Part], changed: Sequence[Part], same: float) -> bool:
-    """Tell whether two unions have the same outline: each lies along the other's."""
-    moved = np.abs(outside_union(changed, before)).max()
-    return bool(max(moved, np.abs(outside_union(parts, outline_of(changed))).max()) <= same)
+def _apart(parts: Sequence[Part], changed: Sequence[Part]) -> float:
+    """Return the greatest distance of the outline of either union from the other, metres."""
+    import shapely
+
+    one, other = (shapely.union_all([part.shape.to_shapely() for part in some]).boundary for some in (parts, changed))
+    return float(shapely.hausdorff_distance(one, other, densify=0.02))
 
 
-def settled(parts: Sequence[Part], sample: Sample) -> tuple[list[Part], list[Bools]]:
-    """Return the parts with their hidden sides off the outline, and which sizes were found to be open on the way.
-
-    A hidden side may have come to lie at the edge of where it can. So each side is pushed in and out by PUSH, and all
-    is fitted anew: a side that was seen comes back, or the points are missed; what costs nothing and stays is open.
-    """
-    parts, is_open = list(parts), []
-    cost = full_cost(parts, sample)
+def all_deepened(parts: Sequence[Part], sample: Sample) -> list[Part]:
+    """Return the parts with hidden sides deep in the others."""
+    deep = list(parts)
     for i, part in enumerate(parts):
-        found = np.zeros(len(_size_slopes(part)), dtype=bool)
-        for side in range(max(1, len(part.corners))):
-            for push in (-PUSH, PUSH):
-                pushed = parts[i].with_numbers(parts[i].x + _push(parts[i], side, push))
-                tried = [*parts[:i], pushed, *parts[i + 1 :]]
-                if not pushed.sound or full_cost(tried, sample) > cost + WORTH_A_FIT:
-                    continue
-                tried = fitted(tried, sample, steps=STEPS_AGAIN)
-                away = np.abs(_size_slopes(parts[i]) @ (tried[i].x - parts[i].x)) > SIZE_STEP
-                if away.any() and _same_outline(outline_of(parts), parts, tried, ROUGHLY):
-                    new = full_cost(tried, sample)
-                    if new <= cost + AS_GOOD:
-                        found, parts, cost = found | away, tried, min(cost, new)
-        is_open.append(found)
-    return parts, is_open
+        if others := [*deep[:i], *deep[i + 1 :]]:
+            known = replace(sample, beside=sample.outside(others).min(axis=0))
+            deep[i] = part.with_numbers(deepened(part.with_numbers(part.x[None]), known).x[0])
+    return fitted(deep, sample, STEPS_AGAIN)
 
 
-def _push(part: Part, side: int, by: float) -> Floats:
-    """Return the change of a part's numbers that moves one side outwards and the others least; of a circle, all."""
-    if part.kind == "circle":
-        return np.array([0.0, 0.0, by])
-    corners = part.corners
-    share = np.array([0.2, 0.5, 0.8])[:, None, None]
-    moves = -part.distance(((1 - share) * corners + share * np.roll(corners, -1, axis=0)).reshape(-1, 2))[1]
-    wanted = np.where(np.arange(3 * len(corners)) % len(corners) == side, by, 0.0)
-    return np.linalg.lstsq(moves, wanted, rcond=1e-6)[0].astype(float)
+def drawn_in(parts: Sequence[Part]) -> list[Part]:
+    """Return the parts with each hidden side drawn in to what the part shows: so far it must reach, at least."""
+    parts = list(parts)
+    for i, part in enumerate(parts):
+        shown = shown_places(part, [*parts[:i], *parts[i + 1 :]], step=0.001)
+        if part.kind != "circle" and len(shown) > 2:
+            normals, offsets = part.lines
+            for gap, way in zip(offsets - (shown @ normals.T).max(axis=0), part.pushes, strict=True):
+                tried = part.with_numbers(parts[i].x - gap * way)
+                if gap > INSIDE and tried.sound and np.abs(tried.outside(shown) - part.outside(shown)).max() < SAME / 2:
+                    parts[i] = tried
+    return parts
 
 
 def may_hide_corner(parts: Sequence[Part], i: int) -> bool:

@@ -1,290 +1,174 @@
-"""Proposals: every part that lies in an outline and shows on it.
+"""Proposals: parts laid around stretches of an outline, and fitted.
 
-A part of a union can hide some of its sides, never cross the outline: **no place of the outline lies inside it**. So
+In a composite each part shows on some stretches of the outline, and hides the rest of itself inside the others. Around
+the points of a stretch are laid, by the bearings of the sides of their hull,
 
-1. a circle is proposed for each arc;
-2. from two straight pieces a rectangle, a regular pentagon and an isosceles triangle, in each way in which the pieces
-   can be their sides; what is not fixed by the two grows until a place of the outline is in the way;
-3. in the style "free", triangles and pentagons on pieces that together bend one way, closed by unseen sides.
+1. the circle that fits them best;
+2. on each side the smallest rectangle and regular pentagon that hold them;
+3. on each two sides the isosceles triangles that hold them; in the style "free", on three a triangle, on five a
+   pentagon, on four pentagons with an unseen corner.
 
-In:  the ``Piece``s of an outline, how near is near, metres, and a style.
+Each is fitted for itself: to points near it, while none may lie inside; points far outside belong to other parts.
+
+In:  stretches, the ``Sample`` of all points, and a style.
 Out: ``Part``s.
 
->>> from primkit.parts.pieces import Piece
->>> corners = np.array([(0, 0), (0.2, 0), (0.2, 0.1), (0, 0.1)])
->>> sides = [Piece(a, b, np.array([a, b])) for a, b in zip(corners, np.roll(corners, -1, axis=0))]
->>> {part.kind for part in proposals(sides, 0.002)} >= {"rectangle"}
-True
+>>> from primkit.shapes import Polygon
+>>> ring = Polygon([(0, 0), (0.2, 0), (0.2, 0.1), (0, 0.1)]).outline(100)
+>>> parts = laid([Stretch(ring, np.full(100, 0.01))], Sample(ring, 0.0004), "paper")
+>>> {(part.kind, *np.sort(part.x[3:]).round(3).tolist()) for part in parts}
+{('rectangle', 0.1, 0.2)}
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 
 from ..arguments import Floats
+from ..circles import fit_circle
+from ..shapes import Kind
 from .families import FIFTHS, Part, Style
+from .fitting import Sample, cost_of_each, deepened, fitted_each
 from .pieces import Piece
 
-QUARTER_TURN, FIFTH = np.pi / 2, 2 * np.pi / 5
-OFF_ANGLE = 0.08  # rad by which two long pieces may miss an angle
-SHORT_PIECE = 0.0025  # m: the ends of a piece may lie off by this, so that short ones tell their direction less well
-LEAST_BASE_ANGLE, MOST_BASE_ANGLE = np.radians(18), np.radians(80)  # at a triangle's base
-LARGEST_PART = 0.4  # m: no part is proposed larger
-CORNER_PLACES, DEEP_IN_CORNER = 6, 0.01  # so many places, 2 mm apart, may lie inside, by so many metres
-STAIRS = 6  # ways to let a rectangle's two free sides grow
+QUARTERS_ROUND = np.arange(4) * (np.pi / 2)
+LONGEST_RUN, BENT_BACK = 6, 0.003  # pieces; m by which one may lie outside of another's line
+SIDES_OF_HULL, MOST_HULL_SIDES = 0.0025, 7  # m by which a corner of a hull stands out; of its sides, the longest count
+LEAST_BASE_ANGLE, MOST_BASE_ANGLE = np.radians((20, 78))  # at a triangle's base
+FEW_SIDES, UNSEEN_TURNS = 4, np.radians((35, 80, 125, 170, 215, 260, 305))  # so many, and then these beside them
+LEAST_TURN_OF_PART = 0.1  # rad by which a side is turned against the one before
+CORNER_OUT = 0.2  # of a side's distance from the middle: where an unseen corner is laid
+LEAST_LAID_AROUND = 8  # points
+NEAR_START, LEAST_NEAR_START = 0.01, 0.6  # m; the share of its stretch that a start is so near to
+STARTS_FITTED = 3  # of a kind around a stretch, that are fitted
+SPREADS, STEPS_AT = (0.004, 0.0), 4  # m: spreads to fit with, first a rough one; steps at each
 
 
-def proposals(pieces: Sequence[Piece], near: float, style: Style = "paper", color: int = -1) -> list[Part]:
-    """Return all parts that lie in the outline, to ``near`` metres, and have pieces of it on theirs.
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """Points to lay parts around, shape (M, 2), metres; how far all points lie outside of other parts; a colour."""
 
-    Of a colour, only pieces of this colour can be on them; those of others are in the way already where they touch.
-    """
-    own = [piece for piece in pieces if color < 0 or piece.color in (-1, color)]
-    in_the_way = [piece.places(inwards=0.0 if piece in own else 2.5 * near) for piece in pieces]
-    pieces, places = own, np.concatenate(in_the_way)
-    straight = [piece for piece in pieces if not piece.is_arc and piece.length > 0.004]
-    found = [Part("circle", np.append(piece.center, piece.radius), style) for piece in pieces if piece.is_arc]
-    for a in straight:
-        for b in straight:
-            if a is not b:
-                found += _rectangles(a, b, places, near, style)
-                if style == "paper":
-                    found += _pentagons(a, b, places, near)
-                    found += _triangles(a, b, places, near)
-    if style == "free":
-        found += _free(straight, places, near)
-    return [replace(part, color=color) for part in found if part.sound and _lies_in(part, places, near)]
+    points: Floats
+    beside: Floats
+    color: int = -1
 
 
-def _lies_in(part: Part, places: Floats, near: float) -> bool:
-    """Tell whether no place lies inside a part; but for a few in a corner where two pieces seem to meet."""
-    deep = -np.partition(part.outside(places), (0, CORNER_PLACES))[[0, CORNER_PLACES]]
-    return bool(deep[0] <= DEEP_IN_CORNER and deep[1] <= 1.5 * near)
+def runs(pieces: Sequence[Piece]) -> Iterator[Floats]:
+    """Yield the points of each run of neighbouring pieces that bends to the left."""
+    n = len(pieces)
+    for i in range(n):
+        for length in range(1, min(LONGEST_RUN, n) + 1):
+            run = [pieces[(i + k) % n] for k in range(length)]
+            ends = np.array([p for piece in run for p in (piece.begin, piece.end)])
+            if max(((ends - piece.begin) @ piece.normal).max() for piece in run) > BENT_BACK:
+                break
+            yield np.concatenate([np.vstack([piece.begin, piece.points, piece.end]) for piece in run])
 
 
-def _normal_at(angle: float) -> Floats:
-    return np.array([np.cos(angle), np.sin(angle)])
+def laid(stretches: Iterable[Stretch], sample: Sample, style: Style) -> list[Part]:
+    """Return the best parts of each kind around each stretch, fitted."""
+    batches: dict[tuple[Kind, int], list[tuple[Floats, Floats]]] = {}
+    rough = max(SPREADS[0], sample.spread)
+    for stretch in stretches:
+        known = replace(sample, spread=rough, beside=stretch.beside)
+        for kind, x in starts_around(stretch.points, style):
+            parts = Part(kind, x, style, stretch.color)
+            near = (np.abs(parts.outside(stretch.points)) <= NEAR_START).mean(axis=1) >= LEAST_NEAR_START
+            parts = parts.with_numbers(x[near & parts.sound])
+            best = np.argsort(cost_of_each(parts, known), kind="stable")[:STARTS_FITTED]
+            batches.setdefault((kind, stretch.color), []).extend((one, stretch.beside) for one in parts.x[best])
+    found = []
+    for (kind, color), batch in batches.items():
+        if batch:
+            x, beside = (np.array(some) for some in zip(*batch, strict=True))
+            parts = Part(kind, x, style, color)
+            for spread in SPREADS:
+                known = replace(sample, spread=max(spread, sample.spread), beside=beside)
+                parts = deepened(fitted_each(parts, known, STEPS_AT), known)
+            found += [parts.with_numbers(one) for one in parts.x]
+    return found
 
 
-def _turn(a: Piece, b: Piece) -> float:
-    """Return by which angle b's normal is turned against a's, radians in (-pi, pi]."""
-    n, m = a.normal, b.normal
-    return float(np.arctan2(n[0] * m[1] - n[1] * m[0], n @ m))
-
-
-def _slack(a: Piece, b: Piece) -> float:
-    """Return how far, in radians, two pieces may miss an angle."""
-    return OFF_ANGLE + SHORT_PIECE / a.length + SHORT_PIECE / b.length
-
-
-def _bearing(a: Piece, b: Piece, apart: float) -> float:
-    """Return the bearing of a's normal, if b's is turned by ``apart`` against it: the longer piece tells more."""
-    off = _turn(a, b) - apart
-    off = (off + np.pi) % (2 * np.pi) - np.pi
-    return float(np.arctan2(*a.normal[::-1]) + off * b.length**3 / (a.length**3 + b.length**3))
-
-
-def _offset(piece: Piece, normal: Floats) -> float:
-    """Return where a line of this normal through the middle of a piece lies."""
-    return float(normal @ piece.points.mean(axis=0))
-
-
-def _rectangles(a: Piece, b: Piece, places: Floats, near: float, style: Style) -> Iterator[Part]:
-    """Yield rectangles of which a and b are neighbouring sides, or opposite ones."""
-    turn = _turn(a, b)
-    if abs(turn - QUARTER_TURN) < _slack(a, b):
-        bearing = _bearing(a, b, QUARTER_TURN)
-        n, m = _normal_at(bearing), _normal_at(bearing + QUARTER_TURN)
-        da, db = _offset(a, n), _offset(b, m)
-        deep, wide = da - places @ n, db - places @ m  # how far inside of either line
-        for depth, width in _stairs(deep, wide, near):
-            center = (da - depth / 2) * n + (db - width / 2) * m
-            yield Part("rectangle", np.array([*center, bearing, depth, width]), style)
-    elif abs(abs(turn) - np.pi) < _slack(a, b):
-        bearing = _bearing(a, b, np.pi)
-        n, m = _normal_at(bearing), _normal_at(bearing + QUARTER_TURN)
-        da, db = _offset(a, n), -_offset(b, -n)
-        if da - db < 0.01:
-            return
-        both = np.concatenate([a.points, b.points]) @ m
-        within = (places @ n < da - near) & (places @ n > db + near)
-        along, middle = (places @ m)[within], (both.min() + both.max()) / 2
-        low = along[along < middle].max(initial=both.min() - LARGEST_PART)
-        high = along[along >= middle].min(initial=both.max() + LARGEST_PART)
-        center = (da + db) / 2 * n + (low + high) / 2 * m
-        yield Part("rectangle", np.array([*center, bearing, da - db, high - low]), style)
-
-
-def _stairs(deep: Floats, wide: Floats, near: float) -> Iterator[tuple[float, float]]:
-    """Yield how deep and wide rectangles in a corner can grow: where the one has to stop depends on the other."""
-    inside = (deep > near) & (wide > near)
-    deep, wide = deep[inside], wide[inside]
-    if len(deep) == 0:
-        return
-    order = np.argsort(deep)
-    deep, least = deep[order], np.minimum.accumulate(wide[order])
-    steps = np.flatnonzero(np.diff(least, prepend=np.inf) < 0)  # the corners of the staircase
-    depths, widths = deep[steps], least[steps]
-    most = np.argsort(np.diff(widths) - np.diff(depths), kind="stable")[:STAIRS]  # a slanted flight has many low steps
-    yield from zip(depths[most + 1].tolist(), widths[most].tolist(), strict=True)
-
-
-def _pentagons(a: Piece, b: Piece, places: Floats, near: float) -> Iterator[Part]:
-    """Yield the largest regular pentagon of which a and b are two sides."""
-    turn = _turn(a, b)
-    for k in (1, 2):
-        if abs(turn - k * FIFTH) >= _slack(a, b):
-            continue
-        bearing = _bearing(a, b, k * FIFTH)
-        normals = np.stack([_normal_at(bearing + fifth) for fifth in FIFTHS])
-        two = normals[[0, k]]
-        ends = np.array([_offset(a, two[0]), _offset(b, two[1])])
-        start, shift = np.linalg.solve(two, ends), np.linalg.solve(two, -np.ones(2))  # the centre is start + rho shift
-        # a place is inside if  n . (q - start) - rho (n . shift + 1) < -near  for all five normals
-        height, rate = (places - start) @ normals.T + near, normals @ shift + 1
-        rho = np.arange(0.02, 0.15, 0.001)
-        inside = (height[:, None] < rho[:, None] * rate).all(axis=2).any(axis=0)
-        if (~inside).any():
-            first = np.flatnonzero(~inside)
-            best = rho[first[np.append(np.diff(first) > 1, True)][0]]  # the end of the first free stretch
-            radius = best / np.cos(np.pi / 5)
-            yield Part("pentagon", np.array([*(start + best * shift), bearing + np.pi / 5, radius]))
-
-
-def _triangles(a: Piece, b: Piece, places: Floats, near: float) -> Iterator[Part]:
-    """Yield the largest isosceles triangles of which a and b are two sides: base and leg, leg and base, both legs."""
-    turn = _turn(a, b)
-    if turn <= 0:
-        return
-    first = np.arctan2(*a.normal[::-1])
-    for base, third in ((0, -turn), (1, 2 * turn), (2, (turn + 2 * np.pi) / 2)):
-        angles = np.array([first, first + turn, first + third])
-        normals = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-        at_base = np.pi - (turn if base < 2 else (2 * np.pi - turn) / 2)
-        if not LEAST_BASE_ANGLE < at_base < MOST_BASE_ANGLE:
-            continue
-        ends = np.array([_offset(a, normals[0]), _offset(b, normals[1])])
-        inside = (places @ normals[:2].T < ends - near).all(axis=1)
-        if not inside.any():
-            continue
-        reach = (places[inside] @ normals[2]).min()
-        yield _isosceles(normals, np.append(ends, reach), base)
-
-
-def _isosceles(normals: Floats, ends: Floats, base: int) -> Part:
-    """Return the triangle between three lines, of which one is the base."""
-    legs = [i for i in range(3) if i != base]
-    apex = np.linalg.solve(normals[legs], ends[legs])
-    corners = [np.linalg.solve(normals[[base, leg]], ends[[base, leg]]) for leg in legs]
-    bearing = np.arctan2(*normals[base][::-1]) + QUARTER_TURN  # the base runs a quarter turn on from its outward normal
-    middle = (corners[0] + corners[1]) / 2
-    width, height = np.hypot(*(corners[0] - corners[1])), ends[base] - normals[base] @ apex
-    return Part("triangle", np.array([*middle, bearing, width, height]))
-
-
-# --- the style "free" ------------------------------------------------------------------------------------------------
-
-
-def _free(straight: Sequence[Piece], places: Floats, near: float) -> Iterator[Part]:
-    """Yield triangles and pentagons on sets of pieces that bend one way and have the outline outside of them."""
-    sides = _with_cuts(straight, near)
-    fits = np.array([[_together((a, b), places, near) for b in sides] for a in sides])
-    sets: list[tuple[int, ...]] = [(i,) for i in range(len(sides))]
-    while sets:
-        longer: list[tuple[int, ...]] = []
-        for some in sets:
-            chosen = [sides[i] for i in some]
-            if len(some) >= 2 and _together(chosen, places, near):
-                yield from _closed(chosen)
-            elif len(some) >= 2:
-                continue
-            if len(some) < 5:
-                longer += [(*some, j) for j in range(some[-1] + 1, len(sides)) if all(fits[i, j] for i in some)]
-        sets = longer
-
-
-def _with_cuts(straight: Sequence[Piece], near: float) -> list[Piece]:
-    """Return the pieces, and the parts of those that the line of another one cuts: two parts may share a line."""
-    sides = list(straight)
-    for piece in straight:
-        along = (piece.end - piece.begin) / piece.length
-        cuts = []
-        for other in straight:
-            sine = other.normal @ along
-            if other is not piece and abs(sine) > 0.2:
-                t = other.normal @ (other.begin - piece.begin) / sine
-                if 0.01 < t < piece.length - 0.01:
-                    cuts.append(t)
-        for t in cuts:
-            middle = piece.begin + t * along
-            for begin, end in ((piece.begin, middle), (middle, piece.end)):
-                lies = (piece.points - begin) @ along
-                some = piece.points[(lies >= -near) & (lies <= np.hypot(*(end - begin)) + near)]
-                if len(some) >= 2:
-                    sides.append(Piece(begin, end, some))
-    return sides
-
-
-def _together(sides: Sequence[Piece], places: Floats, near: float) -> bool:
-    """Tell whether pieces can be sides of one convex part: each inside the others' lines, nothing inside their hull."""
+def starts_around(points: Floats, style: Style) -> Iterator[tuple[Kind, Floats]]:
+    """Yield kinds, and numbers of parts that points lie on or inside of, shape (S, n)."""
     import shapely
 
-    ends = np.array([p for side in sides for p in (side.begin, side.end)])
-    for side in sides:
-        if ((ends - side.begin) @ side.normal).max() > near:
-            return False
-    turns = [abs(_turn(a, b)) for a, b in combinations(sides, 2)]
-    if min(turns, default=1.0) < 0.12:
-        return False
-    hull = shapely.MultiPoint(ends).convex_hull.buffer(-near)
-    return not (hull.area > 0 and shapely.contains_xy(hull, places).any())
+    if (circle := fit_circle(points, method="taubin")) is not None:
+        yield "circle", np.append(circle.center, circle.radius)[None]
+    hull = shapely.MultiPoint(points).convex_hull.simplify(SIDES_OF_HULL)
+    if hull.geom_type != "Polygon":
+        return
+    ring = shapely.get_coordinates(shapely.geometry.polygon.orient(hull).exterior)
+    along = np.diff(ring, axis=0)
+    longest = np.sort(np.argsort(-np.hypot(*along.T), kind="stable")[:MOST_HULL_SIDES])
+    bearings = (np.arctan2(along[:, 1], along[:, 0]) - np.pi / 2)[longest]  # of the sides' outward normals
+
+    def touching(bearings: Floats) -> tuple[Floats, Floats]:
+        """Return the lines of these normals that touch the hull: normals, shape (..., 2), and offsets, (...)."""
+        normals = np.stack([np.cos(bearings), np.sin(bearings)], axis=-1)
+        return normals, (normals @ ring.T).max(axis=-1)
+
+    normals, ends = touching(bearings[:, None] + QUARTERS_ROUND)
+    center = ((ends[:, :2] - ends[:, 2:])[..., None] / 2 * normals[:, :2]).sum(axis=1)
+    yield "rectangle", np.column_stack([center, bearings, ends[:, :2] + ends[:, 2:]])
+    if style == "paper":
+        yield "pentagon", _regular_pentagons(bearings, touching(bearings[:, None] + FIFTHS)[1])
+        yield "triangle", _isosceles(bearings, touching)
+        return
+    if len(bearings) <= FEW_SIDES:  # an unseen side may have any bearing
+        bearings = np.sort(np.append(bearings, bearings[0] + UNSEEN_TURNS))
+    pentagons = []
+    for n in (3, 4, 5):
+        some = np.array(list(combinations(bearings, n))).reshape(-1, n)
+        corners = _meetings(*touching(some))
+        if n == 3:
+            yield "triangle", corners.reshape(len(corners), 6)
+        elif n == 5:
+            pentagons.append(corners)
+        else:
+            for i in range(4):
+                middle = (corners[:, i - 1] + corners[:, i]) / 2
+                pentagons.append(np.insert(corners, i, middle + CORNER_OUT * (middle - corners.mean(axis=1)), axis=1))
+    yield "pentagon", np.concatenate([corners.reshape(len(corners), 10) for corners in pentagons])
 
 
-def _closed(sides: Sequence[Piece]) -> Iterator[Part]:
-    """Yield a triangle, and pentagons, that have the pieces on their sides, and as many unseen sides as it takes."""
-    sides = sorted(sides, key=lambda side: np.arctan2(*side.normal[::-1]))
-    n = len(sides)
-    meets = [_meet(sides[i], sides[(i + 1) % n]) for i in range(n)]
-    gaps = [[sides[i].end, sides[(i + 1) % n].begin] for i in range(n)]
-
-    def ring(opened: dict[int, list[Floats]]) -> Floats | None:
-        corners = []
-        for i in range(n):
-            if i in opened:
-                corners += opened[i]
-            elif (corner := meets[i]) is None:
-                return None
-            else:
-                corners.append(corner)
-        return np.array(corners)
-
-    ways: list[tuple[str, dict[int, list[Floats]]]] = []
-    if n == 3:
-        ways.append(("triangle", {}))
-        ways += [("pentagon", {i: gaps[i], j: gaps[j]}) for i, j in combinations(range(3), 2)]
-        middle = np.mean([p for side in sides for p in (side.begin, side.end)], axis=0)
-        for i, (a, b) in enumerate(gaps):
-            out = (a + b) / 2 + 0.15 * ((a + b) / 2 - middle)
-            ways.append(("pentagon", {i: [a, out, b]}))
-    elif n == 2:
-        ways += [("triangle", {i: gaps[i]}) for i in range(2)]
-    elif n == 4:
-        ways += [("pentagon", {i: gaps[i]}) for i in range(4)]
-    elif n == 5:
-        ways.append(("pentagon", {}))
-    for kind, opened in ways:
-        corners = ring(opened)
-        if corners is not None:
-            yield Part(kind, corners.ravel(), "free")  # type: ignore[arg-type]
+def _regular_pentagons(bearings: Floats, ends: Floats) -> Floats:
+    """Return those with a side of this bearing that touch three of five lines, offsets of shape (S, 5): (10 S, 4)."""
+    three = np.array(list(combinations(range(5), 3)))
+    lines = np.stack(
+        [np.cos(FIFTHS), np.sin(FIFTHS), np.ones(5)], axis=1
+    )  # of the centre, turned back, and inner radius
+    x, y, inner = np.moveaxis((np.linalg.inv(lines[three]) @ ends[:, three, None])[..., 0], 2, 0)
+    turn = np.broadcast_to(bearings[:, None], x.shape)
+    c, s = np.cos(turn), np.sin(turn)
+    found = [c * x - s * y, s * x + c * y, turn + np.pi / 5, inner / np.cos(np.pi / 5)]
+    return np.stack(found, axis=-1).reshape(-1, 4)
 
 
-def _meet(a: Piece, b: Piece) -> Floats | None:
-    """Return where two pieces' lines meet, if b bends to the left of a."""
-    if _turn(a, b) < 0.1:
-        return None
-    corner = np.linalg.solve(np.array([a.normal, b.normal]), [a.normal @ a.begin, b.normal @ b.begin])
-    return corner if np.hypot(*(corner - a.end)) < LARGEST_PART else None
+def _isosceles(bearings: Floats, touching: Callable[[Floats], tuple[Floats, Floats]]) -> Floats:
+    """Return the triangles with two sides alike that have lines of two of these normals as sides, shape (S, 5)."""
+    a, b = (some.ravel() for some in np.meshgrid(bearings, bearings))
+    turn = (b - a) % (2 * np.pi)  # from one normal to the next
+    base = np.concatenate([a, b, a + turn / 2 + np.pi])
+    at_base = np.concatenate([np.pi - turn, np.pi - turn, turn / 2])
+    ok = (np.tile(turn, 3) < np.pi) & (at_base > LEAST_BASE_ANGLE) & (at_base < MOST_BASE_ANGLE)
+    base, at_base = base[ok], at_base[ok]
+    normals, ends = touching(base[:, None] + np.array([0, 1, -1]) * (np.pi - at_base)[:, None])
+    right, left = ((ends[:, i] + np.cos(at_base) * ends[:, 0]) / np.sin(at_base) for i in (1, 2))
+    width, normal = right + left, normals[:, 0]
+    middle = ends[:, :1] * normal + (right - left)[:, None] / 2 * np.stack([-normal[:, 1], normal[:, 0]], axis=1)
+    return np.column_stack([middle, base + np.pi / 2, width, width / 2 * np.tan(at_base)])
+
+
+def _meetings(normals: Floats, ends: Floats) -> Floats:
+    """Return where lines meet, each with the one before, shape (S, K, 2), of those that close."""
+    before, before_ends = np.roll(normals, 1, axis=1), np.roll(ends, 1, axis=1)
+    sine = before[..., 0] * normals[..., 1] - before[..., 1] * normals[..., 0]
+    ok = (sine > LEAST_TURN_OF_PART).all(axis=1)
+    x = before_ends * normals[..., 1] - ends * before[..., 1]
+    y = ends * before[..., 0] - before_ends * normals[..., 0]
+    return np.stack([x, y], axis=-1)[ok] / sine[ok][..., None]

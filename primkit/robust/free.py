@@ -195,20 +195,20 @@ def _outlines(points: Floats, spread: float) -> Iterator[Outlines]:
     """Yield outlines through points in order, of fewer and fewer pieces."""
     points = np.roll(points, -int((points**2).sum(axis=1).argmax()), axis=0)  # the farthest point is a corner
     for price in PIECE_COSTS:
-        cuts, _ = _best_cut(points, spread, price)
+        cuts, _ = best_cut(points, spread, price)
         if len(cuts) < 3:
             return
         points = np.roll(points, -int(cuts[len(cuts) // 2]), axis=0)  # once more, from a cut on the other side
-        cuts, pieces = _best_cut(points, spread, price)
+        cuts, pieces = best_cut(points, spread, price)
         if len(cuts) >= 3:
             yield _joined_lines(points, cuts, pieces)
 
 
-def _best_cut(points: Floats, spread: float, price: float) -> tuple[NDArray[np.intp], Floats]:
+def best_cut(points: Floats, spread: float, price: float, n_knots: int = PATH_KNOTS) -> tuple[NDArray[np.intp], Floats]:
     """Return at which points the best pieces begin, shape (K,), and their sums, shape (6, K)."""
     step = np.hypot(*(points - np.roll(points, 1, axis=0)).T)
     place = np.append(0.0, np.cumsum(step / step.sum() + 1 / len(points)))  # few points tell of a long side, too
-    knots = np.unique(np.searchsorted(place, np.linspace(0.0, place[-1], PATH_KNOTS + 1)).clip(0, len(points)))
+    knots = np.unique(np.searchsorted(place, np.linspace(0.0, place[-1], n_knots + 1)).clip(0, len(points)))
     moments = moments_between(points, knots)
     cost = np.where(long_enough(points, knots), squares_of(moments), np.inf) / spread**2 + price
     best, begin = np.append(0.0, np.full(len(cost), np.inf)), [0]  # best[j]: the least cost up to knot j
