@@ -112,7 +112,9 @@ class Choice:
     @cached_property
     def closed(self) -> bool:
         """Whether each side of the best explanation's outline was seen nearly from end to end."""
-        return self.shape is not None and min(seen_shares(self.shape, self.points)) >= NEARLY_ALL
+        if self.shape is None or min(self.ranked[0].seen) >= NEARLY_ALL:  # by those points alone that lie on it
+            return self.shape is not None
+        return min(seen_shares(self.shape, self.points)) >= NEARLY_ALL
 
     @property
     def lead(self) -> float:
