@@ -13,7 +13,7 @@ from primkit.parts import Apart, Composite
 from primkit.parts.families import Part
 from primkit.parts.fitting import Sample, deepened, fitted, outside_union
 from primkit.parts.openness import may_hide_corner, open_sizes
-from primkit.parts.pieces import pieces_of
+from primkit.parts.pieces import pieces_of, room_in
 from primkit.parts.proposals import Stretch, laid, runs
 
 BOX = pk.Polygon([(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (-0.1, 0.05)])
@@ -159,9 +159,10 @@ def test_parts_are_fitted_together() -> None:
 
 def test_each_part_is_laid_around_a_stretch_of_the_outline() -> None:
     composite = COMPOSITES["box in a pentagon"][0]
-    sample = Sample(seen(composite), 0.0004)
-    pieces = pieces_of(sample.points, sample.spread)
+    points = seen(composite)
+    pieces = pieces_of(points, 0.0004)
     assert pieces is not None
+    sample = Sample(points, 0.0004, room=room_in(pieces, 0.006))
     far = np.full(len(sample.points), 0.0025)
     pool = laid([Stretch(points, far) for points in runs(pieces) if len(points) > 7], sample, "paper")
     for part in composite.parts:

@@ -153,19 +153,23 @@ def _told(ranked: Sequence[Explanation], sample: Sample, frame: Frame) -> Apart:
     """Return the best explanation in metres, with what is open about it."""
     best = ranked[0]
     deep = all_deepened(best.parts, sample)
-    parts = drawn_in(deep)
-    middle = [part.with_numbers((part.x + far.x) / 2) for part, far in zip(parts, deep, strict=True)]
-    is_open = [
-        open_sizes(middle, i) | (np.abs(size_slopes(part) @ (far.x - part.x)) > SIZE_STEP)
-        for i, (part, far) in enumerate(zip(parts, deep, strict=True))
-    ]
+    least, parts = [drawn_in(deep, i) for i in range(len(deep))], deep.copy()
+    middle = [part.with_numbers((part.x + far.x) / 2) for part, far in zip(least, deep, strict=True)]
+    is_open = [np.abs(size_slopes(part) @ (far.x - part.x)) > SIZE_STEP for part, far in zip(least, deep, strict=True)]
+    for i in range(len(parts)):
+        is_open[i] |= open_sizes([*deep[:i], middle[i], *deep[i + 1 :]], i)
+        parts[i] = drawn_in(parts, i)
     others: list[set[Kind]] = [set() for _ in parts]
     for i, part in enumerate(middle):
         if part.style == "free" and may_hide_corner(middle, i):
             others[i].add("pentagon")
         if shows_one_corner(middle, i):
             others[i].add("triangle")
-    on_it = np.abs(outside_union(middle, sample.points)) <= SIGMAS * sample.spread + CELL
+        for rival in ranked:
+            if rival.cost < best.cost + CLEAR_MARGIN and len(rival.parts) == len(parts):
+                far = [np.hypot(*(other.shape.centroid - part.shape.centroid)) for other in rival.parts]
+                others[i] |= {rival.parts[int(np.argmin(far))].kind} - {part.kind}
+    on_it = np.abs(outside_union(deep, sample.points)) <= SIGMAS * sample.spread + CELL
     # That fewest parts win is a wish, and no evidence: fewer parts of a rival do not speak for it.
     rivals = [e.cost + PART_PRICE * min(0, len(e.parts) - len(parts)) for e in ranked if e.kinds != best.kinds]
     return Apart(
@@ -174,7 +178,7 @@ def _told(ranked: Sequence[Explanation], sample: Sample, frame: Frame) -> Apart:
         open_sizes=tuple(tuple(_by_dimension(*one)) for one in zip(parts, is_open, strict=True)),
         could_be=tuple(tuple(sorted(kinds)) for kinds in others),
         margin=float(min(rivals, default=np.inf) - best.cost),
-        fits=bool(on_it.mean() >= LEAST_ON_IT and unseen(middle, sample) <= MOST_UNSEEN),
+        fits=bool(on_it.mean() >= LEAST_ON_IT and unseen(deep, sample) <= MOST_UNSEEN),
     )
 
 

@@ -31,7 +31,7 @@ from .families import Part
 
 STEPS = 12
 WORTH_A_STEP = 0.1  # of the cost
-OUTWARDS = (0.008, 0.016, 0.03, 0.06)  # m by which a side is pushed out, on and on while it is free
+OUTWARDS = (0.004, 0.008, 0.016, 0.03, 0.06)  # m by which a side is pushed out, by each that is free
 FREE_COST = 3.0  # what is no more costs nothing
 DAMPING, MOST_DAMPING = 1e-3, 1e3  # of the mean information of a number
 LEAST_PULL, PULLED = 0.02, 0.01  # what lies off pulls a little; m, if it is as near as this
@@ -68,13 +68,13 @@ class Sample:
         return [-1] if self.colors is None else np.unique(self.colors[self.colors >= 0]).tolist() or [-1]
 
     def outside(self, parts: Sequence[Part]) -> Floats:
-        """Return how far the points lie outside of each part, shape (P, N), metres; of other colours: far, or deep."""
+        """Return how far the points lie outside of each part, shape (P, N), metres; of other colours: far."""
         distances = np.array([part.outside(self.points) for part in parts])
         if self.colors is None:
             return distances
         of_parts = np.array([part.color for part in parts]).reshape(-1, *[1] * (distances.ndim - 1))
         other = (of_parts != self.colors) & (of_parts >= 0) & (self.colors >= 0)
-        return np.where(other, np.where(distances < CELL, -STRAY_WIDTH, STRAY_WIDTH), distances)
+        return np.where(other, STRAY_WIDTH, distances)
 
 
 def outside_union(parts: Sequence[Part], points: Floats) -> Floats:
@@ -151,7 +151,7 @@ def fitted_each(parts: Part, sample: Sample, steps: int) -> Part:
     return parts
 
 
-def deepened(parts: Part, sample: Sample) -> Part:
+def deepened(parts: Part, sample: Sample, by: Sequence[float] = OUTWARDS[1:]) -> Part:
     """Return many parts of one kind with each side pushed out as far as that is free; as ``fitted_each``.
 
     Where a side is hidden, the points tell only that it is deep enough: so it comes to lie deep in other parts.
@@ -160,17 +160,19 @@ def deepened(parts: Part, sample: Sample) -> Part:
 
     if parts.kind == "circle":
         return parts
-    most = cost_of_each(parts, sample) + FREE_COST
+    colors = np.full(len(sample.points), -1) if sample.colors is None else sample.colors
+    strangers = sample.points[(colors >= 0) & (colors != parts.color) & (parts.color >= 0)]
+    most, on_it = cost_of_each(parts, sample) + FREE_COST, (parts.outside(strangers) < CELL).sum(axis=1)
     for way in np.moveaxis(parts.pushes, 1, 0):
-        free = np.ones(len(way), dtype=bool)
-        for step in OUTWARDS:
+        for step in by:
             tried = parts.with_numbers(parts.x + step * way)
             inside = (
                 shapely.contains_xy(sample.room, *np.moveaxis(tried.corners, -1, 0)).all(axis=1)
                 if sample.room
                 else True
             )
-            free &= tried.sound & inside & (cost_of_each(tried, sample) <= most)
+            free = tried.sound & inside & (cost_of_each(tried, sample) <= most)
+            free &= (tried.outside(strangers) < CELL).sum(axis=1) <= on_it  # a part has one colour
             parts = parts.with_numbers(np.where(free[:, None], tried.x, parts.x))
     return parts
 

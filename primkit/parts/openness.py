@@ -32,7 +32,7 @@ import numpy as np
 from ..arguments import Bools, Floats
 from ..random_shapes import LEAST_FREE_SIDE
 from .families import Part
-from .fitting import Sample, deepened, fitted, outside_union
+from .fitting import OUTWARDS, Sample, deepened, fitted, outside_union
 from .search import outline_of
 
 SIZE_STEP, SAME = 0.006, 0.001  # m: sizes that differ by more are different, outlines that differ by less are the same
@@ -81,7 +81,7 @@ def shown_places(part: Part, others: Sequence[Part], step: float = 0.002) -> Flo
     shown = np.ones(len(ring), dtype=bool)
     if others:
         out = outside_union(others, ring)
-        shown = out > SAME / 2
+        shown = out > INSIDE
         stretch = np.cumsum(np.diff(shown, prepend=shown[0]))
         stretch[stretch == stretch[-1]] = 0 if shown[0] == shown[-1] else stretch[-1]
         farthest = np.full(stretch.max() + 1, -np.inf)
@@ -103,10 +103,13 @@ def size_slopes(part: Part) -> Floats:
 
 
 def _apart(parts: Sequence[Part], changed: Sequence[Part]) -> float:
-    """Return the greatest distance of the outline of either union from the other, metres."""
+    """Return the greatest distance of the outline of either union, slits closed, from the other's, metres."""
     import shapely
 
-    one, other = (shapely.union_all([part.shape.to_shapely() for part in some]).boundary for some in (parts, changed))
+    unions = [shapely.union_all([part.shape.to_shapely() for part in some]) for some in (parts, changed)]
+    one, other = shapely.boundary(
+        shapely.buffer(shapely.buffer(unions, INSIDE, join_style="mitre"), -INSIDE, join_style="mitre")
+    )
     return float(shapely.hausdorff_distance(one, other, densify=0.02))
 
 
@@ -116,22 +119,21 @@ def all_deepened(parts: Sequence[Part], sample: Sample) -> list[Part]:
     for i, part in enumerate(parts):
         if others := [*deep[:i], *deep[i + 1 :]]:
             known = replace(sample, beside=sample.outside(others).min(axis=0))
-            deep[i] = part.with_numbers(deepened(part.with_numbers(part.x[None]), known).x[0])
+            deep[i] = part.with_numbers(deepened(part.with_numbers(part.x[None]), known, OUTWARDS[::-1]).x[0])
     return fitted(deep, sample, STEPS_AGAIN)
 
 
-def drawn_in(parts: Sequence[Part]) -> list[Part]:
-    """Return the parts with each hidden side drawn in to what the part shows: so far it must reach, at least."""
-    parts = list(parts)
-    for i, part in enumerate(parts):
-        shown = shown_places(part, [*parts[:i], *parts[i + 1 :]], step=0.001)
-        if part.kind != "circle" and len(shown) > 2:
-            normals, offsets = part.lines
-            for gap, way in zip(offsets - (shown @ normals.T).max(axis=0), part.pushes, strict=True):
-                tried = part.with_numbers(parts[i].x - gap * way)
-                if gap > INSIDE and tried.sound and np.abs(tried.outside(shown) - part.outside(shown)).max() < SAME / 2:
-                    parts[i] = tried
-    return parts
+def drawn_in(parts: Sequence[Part], i: int) -> Part:
+    """Return part i with each hidden side drawn in to what the part shows: so far it must reach, at least."""
+    part = found = parts[i]
+    shown = shown_places(part, [*parts[:i], *parts[i + 1 :]], step=0.001)
+    if part.kind != "circle" and len(shown) > 2:
+        normals, offsets = part.lines
+        for gap, way in zip(offsets - (shown @ normals.T).max(axis=0), part.pushes, strict=True):
+            tried = part.with_numbers(found.x - gap * way)
+            if gap > INSIDE and tried.sound and np.abs(tried.outside(shown) - part.outside(shown)).max() < SAME / 2:
+                found = tried
+    return found
 
 
 def may_hide_corner(parts: Sequence[Part], i: int) -> bool:
