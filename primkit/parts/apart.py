@@ -153,7 +153,7 @@ def _told(ranked: Sequence[Explanation], sample: Sample, frame: Frame) -> Apart:
     """Return the best explanation in metres, with what is open about it."""
     best = ranked[0]
     deep = all_deepened(best.parts, sample)
-    least, parts = [drawn_in(deep, i) for i in range(len(deep))], deep.copy()
+    least, parts = [drawn_in(deep, i, INSIDE) for i in range(len(deep))], deep.copy()
     middle = [part.with_numbers((part.x + far.x) / 2) for part, far in zip(least, deep, strict=True)]
     is_open = [np.abs(size_slopes(part) @ (far.x - part.x)) > SIZE_STEP for part, far in zip(least, deep, strict=True)]
     for i in range(len(parts)):

@@ -72,8 +72,8 @@ def open_sizes(parts: Sequence[Part], i: int) -> Bools:
     return is_open
 
 
-def shown_places(part: Part, others: Sequence[Part], step: float = 0.002) -> Floats:
-    """Return places of a part's outline that lie outside the other parts, off its corners, shape (M, 2), metres.
+def shown_places(part: Part, others: Sequence[Part], step: float = 0.002, beyond: float = INSIDE) -> Floats:
+    """Return places of a part's outline that lie so far beyond the others, off its corners, shape (M, 2), metres.
 
     A stretch that nowhere lies STICKS_OUT outside is none that shows: noise lets hidden corners stick out.
     """
@@ -81,7 +81,7 @@ def shown_places(part: Part, others: Sequence[Part], step: float = 0.002) -> Flo
     shown = np.ones(len(ring), dtype=bool)
     if others:
         out = outside_union(others, ring)
-        shown = out > INSIDE
+        shown = out > beyond
         stretch = np.cumsum(np.diff(shown, prepend=shown[0]))
         stretch[stretch == stretch[-1]] = 0 if shown[0] == shown[-1] else stretch[-1]
         farthest = np.full(stretch.max() + 1, -np.inf)
@@ -123,10 +123,10 @@ def all_deepened(parts: Sequence[Part], sample: Sample) -> list[Part]:
     return fitted(deep, sample, STEPS_AGAIN)
 
 
-def drawn_in(parts: Sequence[Part], i: int) -> Part:
+def drawn_in(parts: Sequence[Part], i: int, beyond: float = SAME / 2) -> Part:
     """Return part i with each hidden side drawn in to what the part shows: so far it must reach, at least."""
     part = found = parts[i]
-    shown = shown_places(part, [*parts[:i], *parts[i + 1 :]], step=0.001)
+    shown = shown_places(part, [*parts[:i], *parts[i + 1 :]], step=0.001, beyond=beyond)
     if part.kind != "circle" and len(shown) > 2:
         normals, offsets = part.lines
         for gap, way in zip(offsets - (shown @ normals.T).max(axis=0), part.pushes, strict=True):
