@@ -3,7 +3,7 @@
 1. The outline is cut into straight pieces and arcs (``pieces.py``).
 2. All parts are proposed that lie in the outline and show on it (``proposals.py``).
 3. Of the sets of parts that explain the outline, the fewest parts win, then the fewest corners, by evidence
-   (``covers.py``); all parts of a set are fitted together (``fitting.py``).
+   (``search.py``); all parts of a set are fitted together (``fitting.py``).
 4. What is open is said: sizes that can change, kinds that could be others (``openness.py``); and how clear all is.
 
 In:  points on the outline of one composite, shape (N, 2), metres; or what ``find_shapes`` found of it.

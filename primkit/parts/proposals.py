@@ -139,9 +139,8 @@ def starts_around(points: Floats, style: Style) -> Iterator[tuple[Kind, Floats]]
 def _regular_pentagons(bearings: Floats, ends: Floats) -> Floats:
     """Return those with a side of this bearing that touch three of five lines, offsets of shape (S, 5): (10 S, 4)."""
     three = np.array(list(combinations(range(5), 3)))
-    lines = np.stack(
-        [np.cos(FIFTHS), np.sin(FIFTHS), np.ones(5)], axis=1
-    )  # of the centre, turned back, and inner radius
+    # Of the centre, turned back, and the inner radius:
+    lines = np.stack([np.cos(FIFTHS), np.sin(FIFTHS), np.ones(5)], axis=1)
     x, y, inner = np.moveaxis((np.linalg.inv(lines[three]) @ ends[:, three, None])[..., 0], 2, 0)
     turn = np.broadcast_to(bearings[:, None], x.shape)
     c, s = np.cos(turn), np.sin(turn)

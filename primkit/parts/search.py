@@ -34,18 +34,10 @@ from .pieces import Piece
 from .proposals import LEAST_LAID_AROUND, Stretch, laid, runs
 
 MOST_PARTS = 4
-SETS_KEPT, SETS_EXCHANGED, SETS_LOOKED_AT, SETS_FITTED, OF_THE_SAME_KINDS = (
-    60,
-    10,
-    40,
-    16,
-    3,
-)  # of each size: to make larger ones of, and to fit
-SEARCH_ROUNDS, BASES, WORTH_A_ROUND = (
-    4,
-    2,
-    2.0,
-)  # of search; explanations that parts are swapped of; by how much the cost must have fallen for one more
+SETS_KEPT, SETS_EXCHANGED = 60, 10  # of each size: to make larger ones of; that members are exchanged of
+SETS_LOOKED_AT, SETS_FITTED, OF_THE_SAME_KINDS = 40, 16, 3  # of each size; of these are fitted; and so of one kind
+SEARCH_ROUNDS, BASES = 4, 2  # of search; explanations that parts are swapped of
+WORTH_A_ROUND = 2.0  # by how much the cost must have fallen for one more
 AS_FAR_AS = 3.0  # spreads (and a cell) from an outline: a point farther off is off
 MUCH_DEARER = 400.0  # than the best: such sets are not fitted
 POINTS_TO_LAY = 160
