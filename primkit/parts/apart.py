@@ -131,7 +131,7 @@ def take_apart(
     points = as_points(found.points if isinstance(found, (Detection, Other)) else found)
     if style not in STYLES_OF_PARTS:
         raise ValueError(f'style must be "paper" or "free", got {short(style)}')
-    labels = None if colors is None else np.asarray(colors).astype(int)
+    labels = None if colors is None else np.asarray(colors).astype(np.intp)  # which any machine can count
     if labels is not None and labels.shape != (len(points),):
         raise ValueError(f"colors must be one for each of the {len(points)} points, got shape {labels.shape}")
     frame = Frame.of(points, as_positive(resolution, "resolution"))
