@@ -255,16 +255,17 @@ def _in_rows(entries: Sequence[str], width: int, top: int) -> tuple[str, int]:
 def side_by_side(pictures: Sequence[str], captions: Sequence[str], *, says: str = "") -> str:
     """Return pictures of the same width as small multiples in one SVG, two in a row, with a caption above each.
 
-    What their legends explain stands once, below all.
+    Captions have letters where there are several. What their legends explain stands once, below all.
     """
     width, _ = size_of(pictures[0])
     found = [re.findall(ENTRY, svg) for svg in pictures]
     bare = [size_of(svg)[1] - _in_rows(entries, width, 0)[1] for svg, entries in zip(pictures, found, strict=True)]
     columns, rows = min(2, len(pictures)), -(-len(pictures) // 2)
     step, cells = max(bare) + 26, []
+    letters = [f"{letter}) " for letter in "abcdefghijkl"] if len(pictures) > 1 else [""]
     for number, (svg, caption) in enumerate(zip(pictures, captions, strict=True)):
         x, y = number % columns * width, number // columns * step
-        cells.append(words_at(x + PAD_LEFT, y + 20, f"{'abcdefghijkl'[number]}) {caption}", size=15, bold=True))
+        cells.append(words_at(x + PAD_LEFT, y + 20, letters[number] + caption, size=15, bold=True))
         cells.append(re.sub(ENTRY, "", svg).replace("<svg ", f'<svg x="{x}" y="{y + 26}" ', 1))
     every = list(dict.fromkeys(entry for entries in found for entry in entries))
     legend, room = _in_rows(every, columns * width, rows * step)
