@@ -101,6 +101,14 @@ def test_a_t_is_not_as_well_two_bars_where_a_point_fills_the_end_of_the_mouth_be
     assert not of_corners((0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)).of_two(two, LEAST_SPREAD)  # one bends inwards
 
 
+def test_two_whose_corners_nearly_meet_are_not_one_with_a_neck():
+    neck = [(-0.1, -0.05), (0, -0.001), (0.1, -0.08), (0.1, 0.08), (0, 0.001), (-0.08, 0.1)]
+    points = pk.Polygon(neck).outline(900)  # the ends of a mouth are filled
+    assert of_corners(*neck).of_two(points, LEAST_SPREAD)
+    wide = np.array(neck) + [(0, 0.02 * np.sign(y)) for _, y in neck]
+    assert not of_corners(*wide).of_two(pk.Polygon(wide).outline(900), LEAST_SPREAD)
+
+
 def test_what_runs_round_once_and_crosses_itself_does_not_close():
     """Two loops that turn against each other leave one turn in all."""
     knot = of_corners((0.1, 0.2), (0.1, 0.1), (0, 0.2), (0, 0.1), (0.2, 0.2), (0.2, 0.3))

@@ -194,6 +194,29 @@ def test_corners_are_sharp_and_bends_are_not():
     assert sharpness(pk.Circle((0, 0), 0.0983).outline(300), outline_of(tangents), spread) < 10
 
 
+def test_shallow_corners_are_told_from_an_arc_in_noise():
+    """Corners of 40 degrees, 5 cm apart, in 2 mm of noise; and an arc in their stead, which fits the sides as well."""
+    spread, rng = spread_across(0.002), np.random.default_rng(0)
+    hexagon = pk.Polygon([(-0.1, -0.05), (0.1, -0.05), (0.063, 0.06), (0.025, 0.092), (-0.025, 0.092), (-0.063, 0.06)])
+    outline, even = outline_of(hexagon), hexagon.outline(400)
+    arc = even[:, 1] > 0.06
+    round_ = even - (0, 0.025)
+    round_[arc] *= 0.0731 / np.hypot(*round_[arc].T)[:, None]
+    noise = rng.normal(0, spread, (40, *even.shape))
+    assert np.mean([sharpness(even + e, outline, spread) >= 10 for e in noise]) >= 0.9
+    assert max(sharpness(round_ + (0, 0.025) + e, outline, spread) for e in noise) < 10
+
+
+def test_three_neighbours_beside_an_outline_are_a_corner_that_it_does_not_have():
+    ring, square = pk.Circle((0, 0), 0.1), pk.Polygon([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)])
+    nib = np.array([(0.102, 0.0202), (0.104, 0.0203), (0.102, 0.0204)])
+    for shape, figure in ((ring, ring), (square, outline_of(square))):
+        points = shape.outline(400)
+        assert lack_of_fit(np.vstack([points, nib[1:]]), figure, LEAST_SPREAD, square=True) > 10
+        assert lack_of_fit(np.vstack([points, nib]), figure, LEAST_SPREAD, square=True) == 0
+        assert lack_of_fit(np.vstack([points, nib * 1.1]), figure, LEAST_SPREAD, square=True) > 10, "strays, far off"
+
+
 def test_a_polygon_that_is_not_convex_has_its_distances():
     ell = pk.Polygon(CORNERED["L"])
     points = np.random.default_rng(0).uniform(-0.12, 0.12, (300, 2))

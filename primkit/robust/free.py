@@ -36,7 +36,7 @@ from .cuts import in_company, long_enough, moments_between, scatter_sums, square
 from .evidence import Candidate, judged
 from .outlines import LEAST_SIDE, Outlines
 from .refine import refine_soft
-from .scatter import CELL, SIGMAS
+from .scatter import CELL, FAR_CELLS, FAR_SPREADS, SIGMAS
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -50,7 +50,6 @@ PIECE_COSTS = 20.0, 40.0, 80.0, 160.0  # about a side's two numbers (``evidence.
 FLAT_TURN = np.radians(35)  # where a piece turns by less, or is shorter than two least sides, there may be none
 ENOUGH_TO_CUT = 600  # points; of more, the least misfit is worth a piece
 CUT_LOOKS = 2  # strays lead cuts astray: once more without them
-FAR_SPREADS, FAR_CELLS = 9.0, 4.0  # what is farther from the first outline is a stray to the second
 
 
 def free_candidate(points: Floats, spread: float) -> list[Candidate]:

@@ -28,7 +28,7 @@ import numpy as np
 from ..arguments import Floats
 from ..shapes import Circle
 from .outlines import Outlines
-from .scatter import CELL_STD, LEAST_SPREAD, SIGMAS, shared_rounding
+from .scatter import CELL, CELL_STD, FAR_CELLS, FAR_SPREADS, LEAST_SPREAD, SIGMAS, shared_rounding
 
 # A bendable outline has so many numbers more, if there are points for them, and at least so many to tell anything.
 BENDS, LEAST_BENDS = 24, 6
@@ -52,21 +52,26 @@ def lack_of_fit(points: Floats, figure: Circle | Outlines, spread: float, *, squ
         Whether four sides were fitted with right angles.
     """
     n_numbers = 3 if isinstance(figure, Circle) else 5 if square else 2 * figure.angles.shape[1]
-    stiff = BEND_COST - bending(residuals_along(points, figure, spread), n_numbers, spread)
+    residuals = residuals_along(points, figure, spread)
+    missed = np.abs(residuals) > SIGMAS * spread
+    if (missed & np.roll(missed, 1) & np.roll(missed, 2)).any():  # three in a row: no strays, but a corner of another
+        return 0.0
+    stiff = BEND_COST - bending(residuals[~missed], n_numbers, spread)
     if isinstance(figure, Circle) or figure.kind != "polygon":
         return stiff
     return min(stiff, sharpness(points, figure, spread))
 
 
 def residuals_along(points: Floats, figure: Circle | Outlines, spread: float) -> Floats:
-    """Return how far the points on a figure lie outside it, in their order along it, metres."""
+    """Return how far the points on a figure, or beside it, lie outside it, in their order along it, metres."""
     if isinstance(figure, Circle):
         place, distance = np.arctan2(*(points - figure.center).T), figure.signed_distance(points)
-        on_it = np.abs(distance) <= SIGMAS * spread
+        told = np.ones(len(points), dtype=bool)
     else:
         place, distance, second = figure.places(points)
-        on_it = (np.abs(distance) <= SIGMAS * spread) & (second > CORNER_BAND_SPREADS * spread)
-    return distance[on_it][np.argsort(place[on_it], kind="stable")]
+        told = second > CORNER_BAND_SPREADS * spread
+    told &= np.abs(distance) <= FAR_SPREADS * spread + FAR_CELLS * CELL
+    return distance[told][np.argsort(place[told], kind="stable")]
 
 
 def bending(residuals: Floats, n_numbers: int, spread: float) -> float:
@@ -86,26 +91,30 @@ def bending(residuals: Floats, n_numbers: int, spread: float) -> float:
 def sharpness(points: Floats, figure: Outlines, spread: float) -> float:
     """Return how much more it costs to round off the two neighbouring corners that are least sharp.
 
-    Around each shallow corner, out to the middle of the shorter of its two sides, the points' heights y over the line
-    that bisects it are fitted once as a + b x + c |x|, a corner, and once as a + b x + c x^2, a bend, both with three
-    numbers. What bends everywhere, such as an ellipse, can be cut into straight pieces, but has no corners.
+    What bends everywhere, such as an ellipse, can be cut into straight pieces, but has no corners. So three sides with
+    two shallow corners are compared with a curve that cuts off both. When the sides have turned and moved as is best, r
+    remains of the points' heights over them, and e of the curve's; it costs (|e - r|^2 - |r|^2) / spread^2 more. At the
+    distance u from a corner that turns by t the curve lies sin(t / 2) (a - u)^2 / (2 a) inside, a parabola, where a is
+    half of the side; or half of the shorter of the two.
     """
-    corners, lengths = figure.corners()[0], np.subtract(*figure.spans()[::-1])[0]
-    turns, gains = np.roll(figure.turns()[0], 1), []
-    for i, (corner, angle, turn) in enumerate(zip(corners, figure.angles[0], turns, strict=True)):
-        middle, reach = angle - turn / 2, min(lengths[i - 1], lengths[i]) / 2 * np.cos(turn / 2)
-        y, x = ((points - corner) @ [(np.cos(middle), -np.sin(middle)), (np.sin(middle), np.cos(middle))]).T
-        near = (np.abs(x) <= reach) & (np.abs(y + np.abs(x) * np.tan(turn / 2)) <= SIGMAS * spread / np.cos(turn / 2))
-        gains.append(_corner_gain(x[near], y[near]) / spread**2 if np.abs(turn) < SHARP else np.inf)
-    return float(np.min(np.array(gains) + np.roll(gains, 1)))
-
-
-def _corner_gain(x: Floats, y: Floats) -> float:
-    """Return by how much squared heights are less about a corner at x = 0 than about a bend."""
-    if len(x) < 4:
-        return 0.0
-    misfit = []
-    for shape in (x**2, np.abs(x)):
-        design = np.column_stack([np.ones_like(x), x, shape])
-        misfit.append(((y - design @ np.linalg.lstsq(design, y, rcond=None)[0]) ** 2).sum())
-    return float(misfit[0] - misfit[1])
+    place, height, _ = figure.places(points)
+    lengths, turns, gains = np.subtract(*figure.spans()[::-1])[0], np.roll(figure.turns()[0], 1), [np.inf]
+    first, on_it = np.cumsum(lengths) - lengths, np.abs(height) <= SIGMAS * spread
+    side = np.searchsorted(first, place, side="right") - 1
+    for corners in zip(range(len(turns)), np.roll(np.arange(len(turns)), -1), strict=True):
+        if np.abs(turns[list(corners)]).max() >= SHARP:
+            continue
+        nth = (side - corners[0] + 1) % len(turns)  # the three sides are 0, 1 and 2
+        near = on_it & (nth <= 2)
+        own, u, nth = side[near], (place - first[side])[near], nth[near]
+        design = np.hstack([np.eye(3)[nth], np.eye(3)[nth] * u[:, None]])
+        for alike in (False, True):
+            inside = np.zeros_like(u)
+            for at, corner in enumerate(corners):
+                leaves = np.minimum(lengths[corner], lengths[corner - 1]) / 2 if alike else lengths[own] / 2
+                away = np.where(nth == at, lengths[own] - u, np.where(nth == at + 1, u, np.inf))
+                inside += np.sin(turns[corner] / 2) * np.maximum(leaves - away, 0.0) ** 2 / (2 * leaves)
+            heights = np.column_stack([height[near], -inside])
+            r, e = (heights - design @ np.linalg.lstsq(design, heights, rcond=None)[0]).T
+            gains.append(float(e @ e - 2 * r @ e) / spread**2)
+    return min(gains)

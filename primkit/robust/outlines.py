@@ -158,15 +158,18 @@ class Outlines:
                 yield i, j, halves
 
     def of_two(self, points: Floats, spread: float) -> bool:
-        """Whether the first outline may as well be that of two shapes with names that stand side by side.
+        """Whether the first outline may as well be that of two shapes that stand side by side.
 
         Cut between two corners that bend inwards, each half is a triangle, a rectangle or a pentagon, and no point,
-        shape (N, 2), metres, lies where a mouth between the two would be.
+        shape (N, 2), metres, lies where a mouth between the two would be; or these corners nearly meet.
         """
-        inwards = turns_of(self.corners()[0]) < 0
+        corners = self.corners()[0]
+        inwards = turns_of(corners) < 0
         return any(
-            inwards[i] and inwards[j] and all(map(_has_name, halves)) and not self._filled(i, j, points, spread)
+            np.hypot(*(corners[i] - corners[j])) < 2 * LEAST_SIDE
+            or (all(map(_has_name, halves)) and not self._filled(i, j, points, spread))
             for i, j, halves in self.halves()
+            if inwards[i] and inwards[j]
         )
 
     def _filled(self, i: int, j: int, points: Floats, spread: float) -> bool:
@@ -213,7 +216,7 @@ class Outlines:
         side, second = away.argmin(axis=1), np.partition(away, 1, axis=1)[:, 1]
         lengths = (end - begin)[0]
         place = (np.cumsum(lengths) - lengths)[side] + np.clip(t - begin[0], 0.0, lengths)[row, side]
-        return place, r[row, side], second
+        return place, np.copysign(away[row, side], r[row, side]), second
 
     def moved(self, offset: Floats) -> Outlines:
         """Return the outlines shifted by ``offset``, shape (2,), metres."""

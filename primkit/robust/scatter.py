@@ -31,6 +31,7 @@ CELL_STD = CELL / 12**0.5  # m: a cell's centre lies evenly within half a cell o
 LEAST_SPREAD = 1.33 * CELL_STD
 
 SIGMAS = 3.0  # a point within three standard deviations may belong to a shape
+FAR_SPREADS, FAR_CELLS = 9.0, 4.0  # a point farther than both together is a stray
 GHOSTS = 0.02  # share of returns that come from nowhere
 NOWHERE = GHOSTS / 0.05  # their density near a shape, over which so many square metres of them are spread
 # Length [m] over which the others are spread. One length for all outlines: were it each outline's own, points seen on
