@@ -200,11 +200,11 @@ def test_shallow_corners_are_told_from_an_arc_in_noise():
     hexagon = pk.Polygon([(-0.1, -0.05), (0.1, -0.05), (0.063, 0.06), (0.025, 0.092), (-0.025, 0.092), (-0.063, 0.06)])
     outline, even = outline_of(hexagon), hexagon.outline(400)
     arc = even[:, 1] > 0.06
-    round_ = even - (0, 0.025)
-    round_[arc] *= 0.0731 / np.hypot(*round_[arc].T)[:, None]
+    bent, middle = even.copy(), np.array([0, 0.025])
+    bent[arc] = middle + 0.0731 * (even[arc] - middle) / np.hypot(*(even[arc] - middle).T)[:, None]
     noise = rng.normal(0, spread, (40, *even.shape))
     assert np.mean([sharpness(even + e, outline, spread) >= 10 for e in noise]) >= 0.9
-    assert max(sharpness(round_ + (0, 0.025) + e, outline, spread) for e in noise) < 10
+    assert max(sharpness(bent + e, outline, spread) for e in noise) < 10
 
 
 def test_three_neighbours_beside_an_outline_are_a_corner_that_it_does_not_have():

@@ -101,10 +101,11 @@ def sharpness(points: Floats, figure: Outlines, spread: float) -> float:
     lengths, turns, gains = np.subtract(*figure.spans()[::-1])[0], np.roll(figure.turns()[0], 1), [np.inf]
     first, on_it = np.cumsum(lengths) - lengths, np.abs(height) <= SIGMAS * spread
     side = np.searchsorted(first, place, side="right") - 1
-    for corners in zip(range(len(turns)), np.roll(np.arange(len(turns)), -1), strict=True):
-        if np.abs(turns[list(corners)]).max() >= SHARP:
+    for i in range(len(turns)):
+        corners = [i, (i + 1) % len(turns)]
+        if np.abs(turns[corners]).max() >= SHARP:
             continue
-        nth = (side - corners[0] + 1) % len(turns)  # the three sides are 0, 1 and 2
+        nth = (side - i + 1) % len(turns)  # the three sides are 0, 1 and 2
         near = on_it & (nth <= 2)
         own, u, nth = side[near], (place - first[side])[near], nth[near]
         design = np.hstack([np.eye(3)[nth], np.eye(3)[nth] * u[:, None]])
