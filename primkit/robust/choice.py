@@ -169,7 +169,7 @@ class Choice:
             and (min(best.seen) >= MOST_SEEN or self._round_enough(best))
             and not (isinstance(figure, Outlines) and without_points(figure, self.points, self.spread).any())
             and large >= LEAST_SIDE
-            and not (isinstance(figure, Outlines) and figure.of_two(self.points, self.spread))
+            and not (isinstance(figure, Outlines) and figure.of_two)
             and self.margin >= CERTAIN  # the last, for it fits the rivals that were not
         )
 

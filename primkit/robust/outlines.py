@@ -30,14 +30,12 @@ from numpy.typing import NDArray
 
 from ..arguments import Floats
 from ..shapes import KINDS, NEARLY_RIGHT, Kind, Polygon, turns_of
-from .scatter import CELL, SIGMAS, noise_of
 
 # What a board can hold, and a sensor can tell: sides of at least 1.5 cm, corners that bend by 15 to 160 degrees.
 LEAST_SIDE, LEAST_PLANK = 0.015, 0.004
 LEAST_TURN, MOST_TURN = np.radians(15), np.radians(160)
 # The same for pieces, of which a part may not have been seen, and for outlines without a name.
 LEAST_STRETCH, LEAST_BEND, MOST_BEND = 0.01, np.radians(8), np.radians(172)
-LEAST_MOUTH = 0.002  # m: shapes that stand nearer are one
 QUARTERS = np.arange(4) * (np.pi / 2)  # the bearings of a rectangle's normals, from its first
 # Lines that bend by less than this (as a sine) meet far beyond any board; this keeps the corner finite.
 PARALLEL = 1e-12
@@ -157,36 +155,23 @@ class Outlines:
             if (inwards[i] or inwards[j]) and min(map(len, halves)) > 2:
                 yield i, j, halves
 
-    def of_two(self, points: Floats, spread: float) -> bool:
+    @cached_property
+    def of_two(self) -> bool:
         """Whether the first outline may as well be that of two shapes that stand side by side.
 
-        Cut between two corners that bend inwards, each half is a triangle, a rectangle or a pentagon, and no point,
-        shape (N, 2), metres, lies where a mouth between the two would be; or these corners nearly meet.
+        Two of its corners bend inwards, and cut between them each half is a triangle, a rectangle or a pentagon; or
+        they nearly meet. Where no beam went through the mouth between two, nothing that was seen tells the one from the
+        other. Then a T is a T: that of two boxes the end of one stands square before a side of the other, a hair away,
+        would be a chance.
         """
-        corners = self.corners()[0]
+        corners, (angles,) = self.corners()[0], self.angles[:1]
         inwards = turns_of(corners) < 0
-        return any(
-            np.hypot(*(corners[i] - corners[j])) < 2 * LEAST_SIDE
-            or (all(map(_has_name, halves)) and not self._filled(i, j, points, spread))
-            for i, j, halves in self.halves()
-            if inwards[i] and inwards[j]
-        )
-
-    def _filled(self, i: int, j: int, points: Floats, spread: float) -> bool:
-        """Tell whether a point lies in the end of a mouth between corners i and j, and cannot come from beside it.
-
-        There the side that does not run along the mouth would end sooner: its point is too far from the other side to
-        be of that, and too near to be beyond a mouth.
-        """
-        corners, r, (normals,) = self.corners()[0], np.abs(self.distances(points)[0]), self._normals[:1]
-        rounding = CELL / 2 * np.abs(normals).sum(axis=0) + SIGMAS * noise_of(spread)
-        across = np.abs((corners[j] - corners[i]) @ normals)
-        for corner in (i, j):
-            beside, ends = sorted((corner - 1, corner), key=across.__getitem__)
-            between = (r[:, beside] > rounding[beside]) & (r[:, beside] < LEAST_MOUTH - rounding[beside])
-            near = np.hypot(*(points - corners[corner]).T) <= 2 * LEAST_MOUTH
-            if (between & near & (r[:, ends] <= rounding[ends])).any():
-                return True
+        for i, j, halves in self.halves():
+            if inwards[i] and inwards[j]:
+                names, along = [_named(half) for half in halves], ((i - 1, j), (i, j - 1))
+                t = names == [4, 4] and max(np.cos(angles[a] - angles[b]) for a, b in along) > np.cos(LEAST_TURN)
+                if np.hypot(*(corners[i] - corners[j])) < 2 * LEAST_SIDE or (all(names) and not t):
+                    return True
         return False
 
     @property
@@ -227,12 +212,12 @@ class Outlines:
         return Polygon(self.corners()[index])
 
 
-def _has_name(corners: Floats) -> bool:
-    """Tell whether corners, shape (M, 2), are nearly those of a triangle, a rectangle or a convex pentagon."""
+def _named(corners: Floats) -> int:
+    """Return how many corners, shape (M, 2), a triangle, a rectangle or a convex pentagon has; 0 of anything else."""
     turns = turns_of(corners)
     bent = turns[np.abs(turns) > LEAST_TURN]
     square = bool((np.abs(bent - np.pi / 2) <= LEAST_TURN).all())
-    return bool((bent > 0).all()) and (len(bent) in (3, 5) or (len(bent) == 4 and square))
+    return len(bent) if (bent > 0).all() and (len(bent) in (3, 5) or (len(bent) == 4 and square)) else 0
 
 
 def _before(sides: Floats) -> Floats:

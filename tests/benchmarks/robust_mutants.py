@@ -223,9 +223,9 @@ MUTANTS = (
         ("test_unknown.py",),
     ),
     Mutant(
-        "a point in the end of a mouth says that there is none",
+        "two shapes side by side may look like one",
         "robust/outlines.py",
-        "and not self._filled(i, j, points, spread)",
+        " or (all(names) and not t)",
         "",
         ("test_outlines.py",),
     ),
