@@ -161,7 +161,7 @@ class Outlines:
 
         Two of its corners bend inwards, and cut between them each half is a triangle, a rectangle or a pentagon; or
         they nearly meet. Where no beam went through the mouth between two, nothing that was seen tells the one from the
-        other. Then a T is a T: that of two boxes the end of one stands square before a side of the other, a hair away,
+        other. Then a T is a T: that the end of a box should stand square before a side of another, a hair away,
         would be a chance.
         """
         corners, (angles,) = self.corners()[0], self.angles[:1]
