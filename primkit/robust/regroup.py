@@ -209,7 +209,12 @@ def _halves(group: Choice, spread: float, n_shapes: int | None, explain: Explain
     best = min(ways, key=cost_of, default=())
     if best and all(part.shape is not None for part in best):  # each point to the shape that it is nearer to
         far, near = (np.abs(part.shape.signed_distance(group.points)) for part in best if part.shape is not None)
-        best = min(best, _parts(group.points, near < far, explain) or best, key=cost_of)
+        nearer, reach = near < far, SIGMAS * spread
+        sides = [nearer]
+        for of_either in (np.minimum(near, far) > reach, np.maximum(near, far) <= reach):  # points in the mouth
+            sides += [nearer | of_either, nearer & ~of_either] if of_either.any() else []
+        for side in sides:
+            best = min(best, _parts(group.points, side, explain) or best, key=cost_of)
     return best
 
 
