@@ -196,7 +196,7 @@ def _gain(parts: tuple[Choice, ...], group: Choice) -> float:
     return cost_of(parts) - cost_of([group]) + JOINT_COST * whole
 
 
-def _halves(group: Choice, spread: float, n_shapes: int | None, explain: Explain) -> tuple[Choice, ...]:
+def _halves(group: Choice, spread: float, n_shapes: int | None, explain: Opinion) -> tuple[Choice, ...]:
     """Return a group as two; nothing when it is too small or too large, or well explained as it is."""
     if not group.ranked or not 2 * LEAST_GROUP <= len(group.points) <= MOST_POINTS:
         return ()
@@ -206,15 +206,15 @@ def _halves(group: Choice, spread: float, n_shapes: int | None, explain: Explain
     if n_shapes is None and plain and share >= NEARLY_ALL:  # no wall is two of anything either
         return ()
     ways = [parts for side in _sides(group, spread) if (parts := _parts(group.points, side, explain))]
-    best = min(ways, key=cost_of, default=())
-    if best and all(part.shape is not None for part in best):  # each point to the shape that it is nearer to
+    best, before = min(ways, key=cost_of, default=()), tuple[Choice, ...]()
+    while best is not before and all(part.shape is not None for part in best) and not explain.bounded:
         far, near = (np.abs(part.shape.signed_distance(group.points)) for part in best if part.shape is not None)
-        nearer, reach = near < far, SIGMAS * spread
-        sides = [nearer]
-        for of_either in (np.minimum(near, far) > reach, np.maximum(near, far) <= reach):  # points in the mouth
-            sides += [nearer | of_either, nearer & ~of_either] if of_either.any() else []
-        for side in sides:
-            best = min(best, _parts(group.points, side, explain) or best, key=cost_of)
+        reach, nearer = SIGMAS * spread, near < far
+        sides = [nearer]  # each point to the shape that it is nearer to; those in the mouth, to either
+        for in_mouth in (np.minimum(near, far) > reach, np.maximum(near, far) <= reach):
+            sides += [nearer | in_mouth, nearer & ~in_mouth] if in_mouth.any() else []
+        ways = [parts for side in sides if (parts := _parts(group.points, side, explain))]
+        before, best = best, min([best, *ways], key=cost_of)
     return best
 
 
