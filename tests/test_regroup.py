@@ -198,6 +198,14 @@ def test_two_shapes_that_make_one_outline_are_parted_where_it_bends_inwards(besi
     assert kinds(regrouped(groups_of(beside_each_other), LEAST_SPREAD)) == ["polygon"]
 
 
+def test_what_is_seen_through_a_mouth_belongs_to_the_shape_that_explains_it():
+    """Of the sides that face each other 10 mm apart few points are seen: given to the nearer one, they are strays."""
+    one = pk.Polygon([(0.161, -0.024), (0.243, -0.084), (0.313, 0.01), (0.231, 0.07)])
+    world = pk.World([one, pk.Polygon([(0.236, 0.095), (0.18, 0.136), (0.101, 0.029), (0.158, -0.012)])])
+    found = pk.find_shapes(pk.scan(world, pk.teleport_poses(world)).points(), rng=0)
+    assert [pair.all_right for pair in pk.evaluate(found, world).matches] == [True, True]
+
+
 def test_a_convex_outline_is_not_parted(beside_each_other, monkeypatch):
     asked = []
     real = regroup._sides
