@@ -207,12 +207,11 @@ def _halves(group: Choice, spread: float, n_shapes: int | None, explain: Opinion
         return ()
     ways = [parts for side in _sides(group, spread) if (parts := _parts(group.points, side, explain))]
     best, before = min(ways, key=cost_of, default=()), tuple[Choice, ...]()
-    while best is not before and all(part.shape is not None for part in best) and not explain.bounded:
+    # Each point to the shape that it is nearer to; where both run along each other, what lies on both is of either.
+    while best != before and all(part.shape is not None for part in best) and not explain.bounded:
         far, near = (np.abs(part.shape.signed_distance(group.points)) for part in best if part.shape is not None)
-        reach, nearer = SIGMAS * spread, near < far
-        sides = [nearer]  # each point to the shape that it is nearer to; those in the mouth, to either
-        for in_mouth in (np.minimum(near, far) > reach, np.maximum(near, far) <= reach):
-            sides += [nearer | in_mouth, nearer & ~in_mouth] if in_mouth.any() else []
+        nearer, on_both = near < far, np.maximum(near, far) <= SIGMAS * spread
+        sides = [nearer | on_both, nearer & ~on_both] if on_both.any() else [nearer]
         ways = [parts for side in sides if (parts := _parts(group.points, side, explain))]
         before, best = best, min([best, *ways], key=cost_of)
     return best
