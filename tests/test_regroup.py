@@ -200,8 +200,9 @@ def test_two_shapes_that_make_one_outline_are_parted_where_it_bends_inwards(besi
 
 def test_what_is_seen_through_a_mouth_belongs_to_the_shape_that_explains_it():
     """Around the mouth points lie on both, as they are fitted first: given to the nearer one, they hold a side amiss."""
-    one = pk.Polygon([(0.01, -0.175), (0.053, -0.096), (0.02, 0.035), (-0.059, 0.038), (-0.11, 0.009)])
-    world = pk.World([one, pk.Polygon([(-0.047, -0.114), (-0.133, -0.032), (-0.208, -0.102)])])
+    triangle = pk.Polygon([(0.1842, -0.0687), (0.2284, 0.0362), (0.1133, 0.0808)])
+    rectangle = pk.Polygon([(0.3253, 0.0094), (0.3662, 0.115), (0.1686, 0.1916), (0.1277, 0.0859)])
+    world = pk.World([triangle, rectangle])
     found = pk.find_shapes(pk.scan(world, pk.teleport_poses(world)).points(), rng=0)
     assert [pair.all_right for pair in pk.evaluate(found, world).matches] == [True, True]
 
