@@ -199,7 +199,7 @@ def test_two_shapes_that_make_one_outline_are_parted_where_it_bends_inwards(besi
 
 
 def test_what_is_seen_through_a_mouth_belongs_to_the_shape_that_explains_it():
-    """Around the mouth points lie on both, as they are fitted first: given to the nearer one, they hold a side amiss."""
+    """Points around it lie on both, as these are fitted first: given to the nearer one, they hold a side amiss."""
     triangle = pk.Polygon([(0.1842, -0.0687), (0.2284, 0.0362), (0.1133, 0.0808)])
     rectangle = pk.Polygon([(0.3253, 0.0094), (0.3662, 0.115), (0.1686, 0.1916), (0.1277, 0.0859)])
     world = pk.World([triangle, rectangle])
