@@ -28,7 +28,7 @@ import numpy as np
 from ..arguments import Floats
 from ..shapes import Circle
 from .outlines import Outlines
-from .scatter import CELL, CELL_STD, FAR_CELLS, FAR_SPREADS, LEAST_SPREAD, SIGMAS, shared_rounding
+from .scatter import CELL, CELL_STD, FAR_CELLS, FAR_SPREADS, LEAST_SPREAD, SIGMAS, depth_of, shared_rounding
 
 # A bendable outline has so many numbers more, if there are points for them, and at least so many to tell anything.
 BENDS, LEAST_BENDS = 24, 6
@@ -53,10 +53,11 @@ def lack_of_fit(points: Floats, figure: Circle | Outlines, spread: float, *, squ
     """
     n_numbers = 3 if isinstance(figure, Circle) else 5 if square else 2 * figure.angles.shape[1]
     residuals = residuals_along(points, figure, spread)
-    missed = np.abs(residuals) > SIGMAS * spread
-    if (missed & np.roll(missed, 1) & np.roll(missed, 2)).any():  # three in a row: no strays, but a corner of another
+    beside = np.abs(residuals) > depth_of(spread)
+    if (beside & np.roll(beside, 1)).any():  # two neighbours: no strays, but a corner of another
         return 0.0
-    stiff = BEND_COST - bending(residuals[~missed], n_numbers, spread)
+    residuals = residuals[np.abs(residuals) <= SIGMAS * spread]
+    stiff = BEND_COST - bending(residuals, n_numbers, spread)
     if isinstance(figure, Circle) or figure.kind != "polygon":
         return stiff
     return min(stiff, sharpness(points, figure, spread))
