@@ -23,7 +23,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from itertools import combinations
+from itertools import combinations, permutations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -206,15 +206,22 @@ def _halves(group: Choice, spread: float, n_shapes: int | None, explain: Opinion
     if n_shapes is None and plain and share >= NEARLY_ALL:  # no wall is two of anything either
         return ()
     ways = [parts for side in _sides(group, spread) if (parts := _parts(group.points, side, explain))]
-    best, before = min(ways, key=cost_of, default=()), tuple[Choice, ...]()
+    best, before = min(ways, key=_cost_apart, default=()), tuple[Choice, ...]()
     # Each point to the shape that it is nearer to; where both run along each other, what lies on both is of either.
     while best != before and all(part.shape is not None for part in best) and not explain.bounded:
         far, near = (np.abs(part.shape.signed_distance(group.points)) for part in best if part.shape is not None)
         nearer, on_both = near < far, np.maximum(near, far) <= SIGMAS * spread
         sides = [nearer | on_both, nearer & ~on_both] if on_both.any() else [nearer]
         ways = [parts for side in sides if (parts := _parts(group.points, side, explain))]
-        before, best = best, min([best, *ways], key=cost_of)
+        before, best = best, min([best, *ways], key=_cost_apart)
     return best
+
+
+def _cost_apart(parts: tuple[Choice, ...]) -> float:
+    """Return what two parts cost, and the points of each that lie on the other or inside it: no beam gets there."""
+    both = [(a.points, b.shape, b.spread) for a, b in permutations(parts, 2) if b.shape is not None]
+    amiss = sum(np.count_nonzero(shape.signed_distance(points) <= SIGMAS * spread) for points, shape, spread in both)
+    return cost_of(parts) + INSIDE_COST * min(amiss, MOST_INSIDE)
 
 
 def _parts(points: Floats, side: NDArray[np.bool_], explain: Explain) -> tuple[Choice, ...]:
