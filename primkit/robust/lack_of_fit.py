@@ -96,7 +96,7 @@ def sharpness(points: Floats, figure: Outlines, spread: float) -> float:
     two shallow corners are compared with a curve that cuts off both. When the sides have turned and moved as is best, r
     remains of the points' heights over them, and e of the curve's; it costs (|e - r|^2 - |r|^2) / spread^2 more. At the
     distance u from a corner that turns by t the curve lies sin(t / 2) (a - u)^2 / (2 a) inside, a parabola, where a is
-    half of the side; or half of the shorter of the two.
+    half of the shorter of the corner's two sides.
     """
     place, height, _ = figure.places(points)
     lengths, turns, gains = np.subtract(*figure.spans()[::-1])[0], np.roll(figure.turns()[0], 1), [np.inf]
@@ -110,13 +110,12 @@ def sharpness(points: Floats, figure: Outlines, spread: float) -> float:
         near = on_it & (nth <= 2)
         own, u, nth = side[near], (place - first[side])[near], nth[near]
         design = np.hstack([np.eye(3)[nth], np.eye(3)[nth] * u[:, None]])
-        for alike in (False, True):
-            inside = np.zeros_like(u)
-            for at, corner in enumerate(corners):
-                leaves = np.minimum(lengths[corner], lengths[corner - 1]) / 2 if alike else lengths[own] / 2
-                away = np.where(nth == at, lengths[own] - u, np.where(nth == at + 1, u, np.inf))
-                inside += np.sin(turns[corner] / 2) * np.maximum(leaves - away, 0.0) ** 2 / (2 * leaves)
-            heights = np.column_stack([height[near], -inside])
-            r, e = (heights - design @ np.linalg.lstsq(design, heights, rcond=None)[0]).T
-            gains.append(float(e @ e - 2 * r @ e) / spread**2)
+        inside = np.zeros_like(u)
+        for at, corner in enumerate(corners):
+            away = np.where(nth == at, lengths[own] - u, np.where(nth == at + 1, u, np.inf))
+            leaves = np.minimum(lengths[corner], lengths[corner - 1]) / 2
+            inside += np.sin(turns[corner] / 2) * np.maximum(leaves - away, 0.0) ** 2 / (2 * leaves)
+        heights = np.column_stack([height[near], -inside])
+        r, e = (heights - design @ np.linalg.lstsq(design, heights, rcond=None)[0]).T
+        gains.append(float(e @ e - 2 * r @ e) / spread**2)
     return min(gains)
