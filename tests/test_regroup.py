@@ -207,6 +207,15 @@ def test_what_is_seen_through_a_mouth_belongs_to_the_shape_that_explains_it():
     assert [pair.all_right for pair in pk.evaluate(found, world).matches] == [True, True]
 
 
+def test_a_side_that_was_not_seen_does_not_run_along_another_shape():
+    """The rectangle's, 15 mm from the pentagon: on it lie no points, and beyond it those of the pentagon's."""
+    corners = [(0.1441, 0.2041), (0.1097, 0.2805), (-0.073, 0.2156), (-0.108, 0.1663), (-0.0684, 0.1058)]
+    rectangle = pk.Polygon([(0.1483, 0.0571), (0.0979, 0.1662), (-0.0427, 0.1012), (0.0077, -0.0079)])
+    world, grid = pk.World([pk.Polygon(corners), rectangle]), pk.Grid()
+    grid.add(pk.scan(world, pk.teleport_poses(world)))
+    assert all(pair.all_right for pair in pk.evaluate(pk.find_shapes(grid, rng=0), world).matches)
+
+
 def test_a_convex_outline_is_not_parted(beside_each_other, monkeypatch):
     asked = []
     real = regroup._sides

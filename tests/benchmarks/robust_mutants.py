@@ -148,6 +148,14 @@ MUTANTS = (
         "NEIGHBOURS",
         ("test_scatter.py", "test_measure.py"),
     ),
+    Mutant("what lies on both halves is of either", "robust/regroup.py", "if on_both.any()", "if False", REGROUP),
+    Mutant(
+        "no half reaches into the other",
+        "robust/regroup.py",
+        "return cost_of(parts) + INSIDE_COST * min(amiss, MOST_INSIDE)",
+        "return cost_of(parts)",
+        REGROUP,
+    ),
     # --- choice ---
     Mutant("no point deep inside", "robust/choice.py", "and not self.inside.any()", "", CHOICE),
     Mutant("nearly all points lie on it", "robust/choice.py", "and self.on_it.mean() >= NEARLY_ALL", "", CHOICE),
@@ -159,8 +167,15 @@ MUTANTS = (
     Mutant(
         "points near a corner may be of either side",
         "robust/lack_of_fit.py",
-        " & (second > CORNER_BAND_SPREADS * spread)",
-        "",
+        "second > CORNER_BAND_SPREADS * spread",
+        "second >= 0",
+        FIT,
+    ),
+    Mutant(
+        "two neighbours beside an outline are a corner of another",
+        "robust/lack_of_fit.py",
+        "(beside & np.roll(beside, 1)).any()",
+        "False",
         FIT,
     ),
     Mutant(
