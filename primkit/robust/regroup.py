@@ -34,7 +34,7 @@ from ..segmentation import LEAST_GROUP, LINK, kmeans, link
 from ..shapes import turns_of
 from .candidates import MOST_POINTS
 from .choice import Choice, explained
-from .evidence import CERTAIN, INSIDE_COST, MOST_INSIDE, NEARLY_ALL, joint_cost
+from .evidence import INSIDE_COST, MOST_INSIDE, NEARLY_ALL, joint_cost
 from .outlines import Outlines
 from .scatter import NOWHERE, SIGMAS, depth_of
 
@@ -192,7 +192,7 @@ def _gain(parts: tuple[Choice, ...], group: Choice) -> float:
     """Return by how much the parts cost more than the whole, a joint that no beam met included; infinite without."""
     if not parts:
         return float("inf")
-    whole = group.fit >= CERTAIN and not group.inside.any()
+    whole = group.fit > 0 and not group.inside.any()
     return cost_of(parts) - cost_of([group]) + JOINT_COST * whole
 
 
