@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import Floats
-from .cuts import in_company, long_enough, moments_between, scatter_sums, squares_of
+from .cuts import KNOTS, in_company, long_enough, moments_between, scatter_sums, squares_of
 from .evidence import Candidate, judged
 from .outlines import LEAST_SIDE, Outlines
 from .refine import refine_soft
@@ -45,7 +45,6 @@ BEAD_CELLS, BEAD_SPREADS = 3.0, 4.0  # neighbours this near are one bead of the 
 MOST_BEADS = 300  # more are made larger: the tree's work goes with their number squared
 AT_AN_END = 0.2  # of the path: there a stray may be its end, and is left out where that closes the path
 CLOSED_GAP, WIDEST_GAP = 0.04, 0.06  # m: nearer ends close an outline; and at most, with lone points or without
-PATH_KNOTS = 120  # cuts lie between two of so many places along the path
 PIECE_COSTS = 20.0, 40.0, 80.0, 160.0  # about a side's two numbers (``evidence.price``); where they do not close, more
 FLAT_TURN = np.radians(35)  # where a piece turns by less, or is shorter than two least sides, there may be none
 ENOUGH_TO_CUT = 600  # points; of more, the least misfit is worth a piece
@@ -78,7 +77,7 @@ def free_outline(points: Floats, spread: float) -> Outlines | None:
         if start is None:
             break
         found = _pruned(points, refine_soft(points, start, spread, sound=Outlines.closes), spread)
-        distance = np.abs(found.distance(points)[0])
+        distance = np.abs(found.signed_distance(points))
         if (distance <= SIGMAS * spread).mean() >= 0.98:
             break
         kept = points[distance <= FAR_SPREADS * spread + FAR_CELLS * CELL]
@@ -204,7 +203,7 @@ def _outlines(points: Floats, spread: float) -> Iterator[Outlines]:
             yield _joined_lines(points, cuts, pieces)
 
 
-def best_cut(points: Floats, spread: float, price: float, n_knots: int = PATH_KNOTS) -> tuple[NDArray[np.intp], Floats]:
+def best_cut(points: Floats, spread: float, price: float, n_knots: int = 2 * KNOTS) -> tuple[NDArray[np.intp], Floats]:
     """Return at which points the best pieces begin, shape (K,), and their sums, shape (6, K)."""
     step = np.hypot(*(points - np.roll(points, 1, axis=0)).T)
     place = np.append(0.0, np.cumsum(step / step.sum() + 1 / len(points)))  # few points tell of a long side, too
