@@ -39,7 +39,7 @@ from .free import free_candidate
 from .lack_of_fit import lack_of_fit
 from .outlines import QUARTERS, Outlines, joined
 from .refine import SOFT_ROUNDS, one_side_more, refine_hard, refine_soft
-from .scatter import ENOUGH_POINTS, GHOSTS, LEAST_SPREAD, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
+from .scatter import ENOUGH_POINTS, LEAST_SPREAD, SIGMAS, shares_smooth
 
 MOST_RADIUS = 0.25  # m: a larger circle than a quarter of the board is a wall
 LEAST_ARC = np.radians(60)  # a shorter arc fits a wide range of circles
@@ -288,9 +288,8 @@ def polished(points: Floats, rough: Candidate, spread: float, *, soft: bool = Tr
 def _polished_circle(points: Floats, circle: Circle, spread: float) -> Circle | None:
     """Return the geometric fit in which points from nowhere do not count; None when it grows beyond a board."""
     for _ in range(SOFT_ROUNDS):
-        across, told = scatter(circle.signed_distance(points), spread)
-        density = (1 - GHOSTS) * across / OUTLINE_LENGTH
-        fitted = nearer_circle(circle, points, told * density / (density + NOWHERE))
+        share, told, _ = shares_smooth(circle.signed_distance(points), spread)
+        fitted = nearer_circle(circle, points, share * told)
         if fitted is None or fitted.radius > MOST_RADIUS:
             return None
         change = max(abs(fitted.radius - circle.radius), *np.abs(fitted.center - circle.center).tolist())

@@ -36,7 +36,7 @@ from .covariance import Linearised, covariance
 from .evidence import PRIOR_WIDTH
 from .outlines import Outlines
 from .refine import LEAST_OF_SIDE, shares
-from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
+from .scatter import SIGMAS, shares_smooth
 
 # A side was seen when so many points lie on it, over such a length [m] and such a share of it, and not near a corner,
 # where they may as well belong to the neighbour: a line over a hidden side touches the last points of both neighbours.
@@ -147,9 +147,8 @@ def _of_circle(circle: Circle, points: Floats, spread: float) -> Linearised:
     def equations(step: Floats, at: Floats) -> Floats:
         figure = Circle(circle.center + step[:2], circle.radius + step[2])
         r = figure.signed_distance(at)
-        across, told = scatter(r, spread)
-        density = (1 - GHOSTS) * across / OUTLINE_LENGTH
-        return (density / (density + NOWHERE) * told * r)[:, None] * slopes(figure, at)
+        share, told, _ = shares_smooth(r, spread)
+        return (share * told * r)[:, None] * slopes(figure, at)
 
     b = slopes(circle, points)
     normals = -b[:, :2]

@@ -30,7 +30,7 @@ from ..seen import REACH, seen_shares, shares_along
 from ..shapes import Circle, Kind, Shape
 from .outlines import Outlines
 from .refine import shares
-from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, depth_of, scatter
+from .scatter import OUTLINE_LENGTH, SIGMAS, depth_of, shares_smooth
 
 # What is supposed before the points are looked at. Each number of a shape is known to about a centimetre. An outline
 # is seen nearly all around: each metre that was not seen is as unlikely as one in e^40. And an outline that is none of
@@ -84,27 +84,28 @@ def judged(points: Floats, figure: Figure, spread: float, *, square: bool = Fals
     """Return a figure that was fitted to a cluster's points with its cost; of a bare wall, the back was not seen."""
     distance = figure.signed_distance(points)
     near = np.abs(distance) <= SIGMAS * spread
+    if isinstance(figure, Outlines):
+        share, _, (log_likelihood,) = shares(points, figure, spread)
+    else:
+        share, _, log_likelihood = shares_smooth(distance, spread)
+    n_on = float(share.sum())
     if isinstance(figure, Line):
-        on_it, log_likelihood = _along_smooth(distance, spread)
         length = float(np.ptp(points[near] @ figure.direction)) if near.any() else 0.0
-        cost = price((1, False), len(points), spread) - 2 * log_likelihood + _length_cost(on_it, length)
-        return Candidate(figure, False, cost + UNSEEN_COST * length, length, on_it)
+        cost = price((1, False), len(points), spread) - 2 * log_likelihood + _length_cost(n_on, length)
+        return Candidate(figure, False, cost + UNSEEN_COST * length, length, n_on)
     if isinstance(figure, Circle):
         way, lengths, seen = (0, False), np.array([figure.perimeter]), seen_shares(figure, points[near])
-        on_it, log_likelihood = _along_smooth(distance, spread)
     else:
         begin, end = figure.spans()
-        lengths, along, across = (end - begin)[0], figure.along(points) - begin[:, None], figure.distances(points)
+        way, lengths = (figure.angles.shape[1], square), (end - begin)[0]
+        along, across = figure.along(points) - begin[:, None], figure.distances(points)
         seen = shares_along(along[0, near].T, across[0, near].T, lengths)
-        way = len(lengths), square
-        share, _, each = shares(points, figure, spread)
-        on_it, log_likelihood = float(share.sum()), float(each[0])
     length = float(lengths @ np.array(seen))
-    cost = price(way, len(points), spread) - 2 * log_likelihood + _length_cost(on_it, length)
+    cost = price(way, len(points), spread) - 2 * float(log_likelihood) + _length_cost(n_on, length)
     cost += UNSEEN_COST * float(lengths.sum() - length) + INSIDE_COST * _inside(distance, spread)
     named = isinstance(figure, Circle) or square or (figure.kind != "polygon" and len(lengths) != 4)
     nameless = 0.0 if named else NAMELESS_COST if min(seen) >= NEARLY_ALL else NAMELESS_PART_COST
-    return Candidate(figure, square, cost + nameless, length, on_it, seen, nameless)
+    return Candidate(figure, square, cost + nameless, length, n_on, seen, nameless)
 
 
 @lru_cache
@@ -146,16 +147,6 @@ def _inside(distance: Floats, spread: float) -> int:
     depth = depth_of(spread)
     n_inside, n_outside = np.count_nonzero(distance < -depth), np.count_nonzero(distance > depth)
     return int(np.clip(n_inside - n_outside, 0, MOST_INSIDE))
-
-
-def _along_smooth(distance: Floats, spread: float) -> tuple[float, float]:
-    """Return how many points lie on an outline without corners, and the logarithm of how likely they all are.
-
-    The model is that of ``refine.shares``.
-    """
-    on_it = (1 - GHOSTS) * scatter(distance, spread)[0] / OUTLINE_LENGTH
-    total = on_it + NOWHERE
-    return float((on_it / total).sum()), float(np.log(total).sum())
 
 
 def _length_cost(n_on: float, length: float) -> float:

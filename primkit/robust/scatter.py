@@ -112,6 +112,14 @@ def scatter(distance: Floats, spread: float) -> tuple[Floats, Floats]:
     return density, sum(part * (spread**2 / v) for part, (_, v) in zip(parts, both, strict=True)) / density
 
 
+def shares_smooth(distance: Floats, spread: float) -> tuple[Floats, Floats, float]:
+    """Return what ``refine.shares`` returns, for an outline without corners at these distances, shape (N,)."""
+    across, told = scatter(distance, spread)
+    density = (1 - GHOSTS) * across / OUTLINE_LENGTH
+    total = density + NOWHERE
+    return density / total, told, float(np.log(total).sum())
+
+
 def spread_of(points: ArrayLike) -> float:
     """Return the standard deviation of points from the outlines that they lie on, before any is known, metres.
 

@@ -129,8 +129,8 @@ MUTANTS = (
     Mutant(
         "the back of a wall was not seen",
         "robust/evidence.py",
-        "cost + UNSEEN_COST * length, length, on_it",
-        "cost, length, on_it",
+        "cost + UNSEEN_COST * length, length, n_on",
+        "cost, length, n_on",
         EVIDENCE + CHOICE,
     ),
     # --- scatter ---
@@ -196,7 +196,7 @@ MUTANTS = (
     Mutant(
         "strays are left out of the first fit",
         "robust/candidates.py",
-        "kept = kept[on_it if near.all() else near]",
+        "points = points[on_it if near.all() else near]",
         "return",
         CUTS,
     ),
