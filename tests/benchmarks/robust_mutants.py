@@ -153,7 +153,7 @@ MUTANTS = (
     Mutant("nearly all points lie on it", "robust/choice.py", "and self.on_it.mean() >= NEARLY_ALL", "", CHOICE),
     Mutant("nearly all of it was seen", "robust/choice.py", "min(best.seen) >= MOST_SEEN", "True", CHOICE),
     Mutant("an arc, where all can be", "robust/choice.py", 'and "polygon" not in self.kinds', "", CHOICE),
-    Mutant("a side has its own points", "robust/deviations.py", ".sum(axis=0) < LEAST_OF_SIDE", ".sum(axis=0) < 0", CHOICE),
+    Mutant("a side has its own points", "robust/deviations.py", "=0) < LEAST_OF_SIDE", "=0) < 0", CHOICE),
     Mutant("so large that its kind can show", "robust/choice.py", "and large >= LEAST_SIDE", "", CHOICE),
     # --- lack of fit ---
     Mutant(
