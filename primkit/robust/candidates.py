@@ -195,9 +195,13 @@ class Ways:
         cost, fit = self.done[way]
         if again and cost > self.least[way] + CHANCE and starts is not None and way not in self.again:
             self.again.add(way)
-            begin = frames(self.points, starts) if square else self._one_side_more(k)
-            begin = joined(fit, begin) if isinstance(fit, Outlines) else begin
-            fit = _refined(self.points, begin, self.spread, square=square)
+            begin = [fit] if isinstance(fit, Outlines) else []
+            fewer = self.fitted((k - 1, False), again=True)[1] if k > 3 and not square else None
+            if square:
+                begin.append(frames(self.points, starts))
+            elif isinstance(fewer, Outlines):
+                begin.append(one_side_more(self.points, fewer))
+            fit = _refined(self.points, joined(*begin), self.spread, square=square) if begin else None
             self.done[way] = self.cost(fit, way), fit
         return self.done[way]
 
@@ -207,11 +211,6 @@ class Ways:
             return starts
         begin = Outlines(starts.angles[:, :1] + QUARTERS, starts.offsets) if square else starts
         return _refined(self.points, begin, self.spread, square=square)
-
-    def _one_side_more(self, k: int) -> Outlines:
-        """Return starts with k sides, from the best outline that has one less."""
-        fewer = self.fitted((k - 1, False), again=True)[1] if k > 3 else None
-        return one_side_more(self.points, fewer) if isinstance(fewer, Outlines) else Outlines(*np.empty((2, 0, k)))
 
 
 def _circle_through(points: Floats) -> Circle | None:

@@ -77,7 +77,8 @@ def certainty(
         x, y, radius = np.sqrt(np.diag(covariance(_of_circle(figure, points, spread), scans, noise_std))).tolist()
         enough = seen_shares(figure, points)[0] >= LEAST_OF_CIRCLE and radius <= PRIOR_WIDTH
         return Certainty((x, y), (radius if enough else float("inf"),))
-    fitted = _fitted_numbers(figure, square)
+    each = np.eye(2 * figure.angles.shape[1])  # K angles and K offsets; right angles have one angle for all
+    fitted = np.column_stack([each[:, :4].sum(axis=1), each[:, 4:]]) if square else each
     spreads = fitted @ covariance(_of_sides(figure, points, spread, fitted), scans, noise_std) @ fitted.T
     seen = sides_seen(figure, points, spread)
     rectangle = figure.kind == "rectangle"
@@ -158,7 +159,7 @@ def _of_circle(circle: Circle, points: Floats, spread: float) -> Linearised:
 
 
 def _of_sides(outline: Outlines, points: Floats, spread: float, fitted: Floats) -> Linearised:
-    """Return an outline's fit to first order; see ``_fitted_numbers``."""
+    """Return an outline's fit to first order; ``fitted`` is how angles and offsets hang on the fitted numbers."""
     k = outline.angles.shape[1]
 
     def equations(step: Floats, at: Floats) -> Floats:
@@ -175,12 +176,6 @@ def _of_sides(outline: Outlines, points: Floats, spread: float, fitted: Floats) 
     begin, end = outline.spans()
     r = outline.distances(points)[0][row, own]
     return Linearised(effect, b @ fitted, pulls, r, normals, points, own, float((end - begin).sum()))
-
-
-def _fitted_numbers(outline: Outlines, square: bool) -> Floats:
-    """Return how the K angles and K offsets hang on the numbers that were fitted; right angles have one for all."""
-    each = np.eye(2 * outline.angles.shape[1])
-    return np.column_stack([each[:, :4].sum(axis=1), each[:, 4:]]) if square else each
 
 
 def _effect(

@@ -102,7 +102,9 @@ def judged(points: Floats, figure: Figure, spread: float, *, square: bool = Fals
         seen = shares_along(along[0, near].T, across[0, near].T, lengths)
     length = float(lengths @ np.array(seen))
     cost = price(way, len(points), spread) - 2 * float(log_likelihood) + _length_cost(n_on, length)
-    cost += UNSEEN_COST * float(lengths.sum() - length) + INSIDE_COST * _inside(distance, spread)
+    n_inside, n_outside = (np.count_nonzero(side * distance > depth_of(spread)) for side in (-1, 1))
+    inside = int(np.clip(n_inside - n_outside, 0, MOST_INSIDE))  # without as many as are strays outside
+    cost += UNSEEN_COST * float(lengths.sum() - length) + INSIDE_COST * inside
     named = isinstance(figure, Circle) or square or (figure.kind != "polygon" and len(lengths) != 4)
     nameless = 0.0 if named else NAMELESS_COST if min(seen) >= NEARLY_ALL else NAMELESS_PART_COST
     return Candidate(figure, square, cost + nameless, length, n_on, seen, nameless)
@@ -140,13 +142,6 @@ def joint_cost(candidates: Sequence[Candidate]) -> float:
     n_on, length = sum(c.n_on for c in candidates), sum(c.length for c in candidates)
     together = _length_cost(n_on, length) - sum(_length_cost(c.n_on, c.length) for c in candidates)
     return sum(c.cost for c in candidates) + together
-
-
-def _inside(distance: Floats, spread: float) -> int:
-    """Return how many points deep inside an outline count: not those that may be strays, as there are outside."""
-    depth = depth_of(spread)
-    n_inside, n_outside = np.count_nonzero(distance < -depth), np.count_nonzero(distance > depth)
-    return int(np.clip(n_inside - n_outside, 0, MOST_INSIDE))
 
 
 def _length_cost(n_on: float, length: float) -> float:
