@@ -171,23 +171,22 @@ def _bead_size(spread: float) -> float:
 
 def _beads(points: Floats, size: float) -> Floats:
     """Return the means of the points in squares of this size, shape (M, 2)."""
-    ij = np.floor((points - points.min(axis=0, initial=np.inf)) / size).astype(np.int64)
-    square, n = np.unique(ij, axis=0, return_inverse=True, return_counts=True)[1:]
-    square = square.ravel().astype(np.intp, copy=False)  # numpy 2.0 returns a column
+    i, j = np.floor((points - points.min(axis=0, initial=np.inf)) / size).astype(np.int64).T
+    _, square, n = np.unique(i * (j.max(initial=0) + 1) + j, return_inverse=True, return_counts=True)
+    square = square.astype(np.intp, copy=False)
     return np.column_stack([np.bincount(square, axis, len(n)) / n for axis in points.T])
 
 
 def _along(points: Floats, path: Floats) -> tuple[Floats, Floats]:
     """Return where each point lies along a closed path, and how far from it, shape (N,) each, metres."""
-    edges = np.roll(path, -1, axis=0) - path
-    squared = np.maximum((edges**2).sum(axis=1), np.finfo(float).tiny)
-    offset = points[:, None] - path
-    share = np.clip((offset * edges).sum(axis=2) / squared, 0.0, 1.0)
-    distance = np.hypot(*np.moveaxis(offset - share[..., None] * edges, 2, 0))
-    nearest, row = distance.argmin(axis=1), np.arange(len(points))
+    (edge_x, edge_y), (x, y) = (np.roll(path, -1, axis=0) - path).T, np.moveaxis(points[:, None] - path, 2, 0)
+    squared = np.maximum(edge_x**2 + edge_y**2, np.finfo(float).tiny)
+    share = np.clip((x * edge_x + y * edge_y) / squared, 0.0, 1.0)
+    x, y = x - share * edge_x, y - share * edge_y
+    nearest, row = (x**2 + y**2).argmin(axis=1), np.arange(len(points))
     lengths = np.sqrt(squared)
     place = np.concatenate([[0.0], np.cumsum(lengths)])[nearest] + share[row, nearest] * lengths[nearest]
-    return place, distance[row, nearest]
+    return place, np.hypot(x[row, nearest], y[row, nearest])
 
 
 def _outlines(points: Floats, spread: float) -> Iterator[Outlines]:
