@@ -60,15 +60,7 @@ def free_candidate(points: Floats, spread: float) -> list[Candidate]:
 
 
 def free_outline(points: Floats, spread: float) -> Outlines | None:
-    """Return the best outline of straight pieces around the points; None where they do not close.
-
-    Parameters
-    ----------
-    points : array, shape (N, 2)
-        Metres, around the origin.
-    spread : float
-        Standard deviation of the points from the outline, metres.
-    """
+    """Return the best outline of straight pieces around the points; None where they do not close."""
     kept, found = points, None
     for _ in range(CUT_LOOKS):
         ordered = round_order(kept, spread)
