@@ -151,6 +151,8 @@ def beside_walls(choice: Choice) -> list[Floats]:
 
 def _room_of(choice: Choice, shape: Shape) -> Outlines | None:
     """Return an outline that is larger than any shape, with room to stand in it, and fits most of the points."""
+    if 2 * shape.reach <= ROOM_ACROSS:
+        return None
     figure = choice.ranked[0].figure
     corners = shape.vertices if isinstance(shape, Polygon) else shape.outline(36)
     across = float(np.hypot(*(corners[:, None] - corners).T).max())

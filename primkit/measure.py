@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .arguments import Floats, Ints, as_points, as_positive
-from .robust.choice import Choice, explained
+from .robust.candidates import candidates
+from .robust.choice import Choice
 from .robust.deviations import Certainty
 from .robust.evidence import CERTAIN
 from .robust.scatter import LEAST_SPREAD, noise_of
@@ -305,7 +306,7 @@ def measure_shape(
     points, spread = as_points(points), as_positive(spread, "spread", zero=True)
     frame = Frame.of(points, as_positive(resolution, "resolution"))
     local, spread = frame.local(points), max(LEAST_SPREAD, spread / frame.unit)
-    found = as_detection(explained(local, spread))
+    found = as_detection(Choice(local, candidates(local, spread), spread))
     return None if found is None else replace(found.in_metres(frame), noise_std=noise_of(spread))
 
 

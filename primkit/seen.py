@@ -64,10 +64,12 @@ def shares_of_sides(begin: Floats, end: Floats, points: Floats) -> tuple[float, 
     lengths = np.hypot(*(end - begin).T)
     x, y = ((end - begin) / lengths[:, None]).T
     along, across = np.array([[x, y], [-y, x]]).swapaxes(1, 2) @ points.T  # (K, N) each
-    along, across = (
-        along - (x * begin[:, 0] + y * begin[:, 1])[:, None],
-        across - (x * begin[:, 1] - y * begin[:, 0])[:, None],
-    )
+    first, off = x * begin[:, 0] + y * begin[:, 1], x * begin[:, 1] - y * begin[:, 0]
+    return shares_along(along - first[:, None], across - off[:, None], lengths)
+
+
+def shares_along(along: Floats, across: Floats, lengths: Floats) -> tuple[float, ...]:
+    """Return the share of each side, of lengths (K,), that was seen by points so far along and beside it, (K, N)."""
     half = np.sqrt(np.maximum(REACH**2 - across**2, 0.0))
     return _shares_covered(along - half, along + half, lengths)
 
@@ -75,7 +77,7 @@ def shares_of_sides(begin: Floats, end: Floats, points: Floats) -> tuple[float, 
 def _shares_covered(begin: Floats, end: Floats, lengths: Floats) -> tuple[float, ...]:
     """Return what share of each length, shape (K,), lies in none of the gaps between intervals, shape (K, N) each."""
     whole = lengths[:, None]
-    pairs = begin.clip(0.0, whole) + 1j * end.clip(0.0, whole)  # in order of where they begin, once they are sorted
-    pairs = np.sort(np.hstack([pairs, 0 * whole, whole * (1 + 1j)]), axis=1)
-    gaps = np.maximum(pairs.real[:, 1:] - np.maximum.accumulate(pairs.imag[:, :-1], axis=1), 0.0)
+    begin, end = (np.hstack([each.clip(0.0, whole), 0 * whole, whole]) for each in (begin, end))
+    row, order = np.arange(len(whole))[:, None], np.argsort(begin, axis=1)
+    gaps = np.maximum(begin[row, order][:, 1:] - np.maximum.accumulate(end[row, order][:, :-1], axis=1), 0.0)
     return tuple(np.round(1 - gaps.sum(axis=1) / lengths, 9).tolist())  # a whole one is 1, whatever the rounding

@@ -14,7 +14,7 @@ from primkit.pipeline import find_again
 from primkit.robust import candidates as bounded
 from primkit.robust import choice
 from primkit.robust.candidates import candidates, explained_again
-from primkit.robust.cuts import best_cuts, by_bearing, chords, in_company, outlines_with
+from primkit.robust.cuts import best_cuts, chords, in_company, outlines_with
 from primkit.robust.scatter import LEAST_SPREAD, spread_across
 
 KINDS = ("circle", "triangle", "rectangle", "pentagon")
@@ -165,7 +165,7 @@ def test_the_best_cut_is_the_polygon(kind):
         shape = shape_of(seed, kind)
         points = shape.outline(300) - shape.centroid
         k = len(shape.vertices)
-        cuts = best_cuts(by_bearing(points))
+        cuts = best_cuts(points)
         assert cuts[k].squares < 1e-9
         found = outlines_with(cuts, [], k).polygon().vertices + shape.centroid
         gaps = np.hypot(*np.moveaxis(found[:, None] - shape.vertices, 2, 0))
@@ -173,7 +173,7 @@ def test_the_best_cut_is_the_polygon(kind):
 
 
 def test_more_pieces_come_closer():
-    cuts = best_cuts(by_bearing(pk.Circle((0, 0), 0.05).outline(240)))
+    cuts = best_cuts(pk.Circle((0, 0), 0.05).outline(240))
     assert cuts[3].squares > 2 * cuts[4].squares > 4 * cuts[5].squares
     rms = np.sqrt(cuts[5].squares / 240)
     assert rms == pytest.approx(0.0588 * 0.05, rel=0.3)  # a chord over a fifth of a circle, away from its ends
@@ -185,7 +185,7 @@ def test_a_side_that_was_not_seen_is_a_chord():
         shape = pk.Polygon(corners)
         points = shape.outline(400)
         points = points[np.abs((points - shape.vertices[hidden]) @ shape.normals[hidden]) > 1e-3]
-        ordered = by_bearing(points - shape.centroid)
+        ordered = points - shape.centroid
         spans = chords(ordered)
         assert len(spans) == 1
         outline = outlines_with(best_cuts(ordered), spans, len(corners))

@@ -11,10 +11,10 @@ from primkit.robust.evidence import (
     NAMELESS_COST,
     NAMELESS_PART_COST,
     UNSEEN_COST,
-    _cost,
     _length_cost,
     joint_cost,
     judged,
+    price,
 )
 from primkit.robust.scatter import LEAST_SPREAD, NOWHERE, spread_across
 from tests.test_outlines import outline_of
@@ -34,12 +34,20 @@ def seen_by_beams(shape, n, noise, rng):
     return (np.floor((points + rng.normal(0, noise, (n, 1)) * beam) * 1000) + 0.5) / 1000
 
 
-def test_every_fitted_number_has_its_price():
-    """The cost by hand: each number costs the logarithm of how far the points narrow it down."""
-    one, two = np.array([1.0]), np.array([1.0, 4.0])
-    assert _cost(-100.0, one, 200, 0.001) == pytest.approx(200 + np.log(1 + 200 * 10**2))
-    assert _cost(-100.0, two, 200, 0.001) == pytest.approx(200 + np.log(1 + 200 * 10**2) + np.log(1 + 50 * 10**2))
-    assert _cost(-90.0, one, 200, 0.001) == pytest.approx(_cost(-100.0, one, 200, 0.001) - 20)
+@pytest.mark.parametrize(
+    ("way", "variances"),
+    [
+        ((0, False), [2, 2, 1]),
+        ((1, False), [1, 3, 1, 1]),
+        ((3, False), [3, 9, 3, 9, 3, 9]),
+        ((4, True), [4, 4, 4, 4, 3]),
+    ],
+    ids=["circle", "wall", "triangle", "rectangle"],
+)
+def test_every_fitted_number_has_its_price(way, variances):
+    """By hand: each number costs the logarithm of how far the points narrow it down."""
+    by_hand = sum(np.log(1 + 200 * 10**2 / v) for v in variances)
+    assert price(way, 200, 0.001) == pytest.approx(by_hand)
 
 
 def test_what_was_not_seen_has_its_price():
@@ -50,7 +58,7 @@ def test_what_was_not_seen_has_its_price():
     assert 0.4 * CIRCLE.perimeter < unseen < 0.5 * CIRCLE.perimeter
     free = half.cost - UNSEEN_COST * unseen
     per_point = -2 * np.log(0.98 / (np.sqrt(2 * np.pi) * LEAST_SPREAD * 0.5) + NOWHERE)
-    by_hand = _cost(200 * per_point / -2, np.array([2.0, 2.0, 1.0]), 200, LEAST_SPREAD) + _length_cost(200, half.length)
+    by_hand = 200 * per_point + price((0, False), 200, LEAST_SPREAD) + _length_cost(200, half.length)
     assert free == pytest.approx(by_hand, rel=1e-4)
 
 
@@ -66,8 +74,7 @@ def test_two_halves_together_cost_what_the_whole_costs():
     points, outline = SQUARE.outline(400), outline_of(SQUARE)
     whole = judged(points, outline, 0.0005)
     halves = [judged(points[points[:, 0] > 0], outline, 0.0005), judged(points[points[:, 0] <= 0], outline, 0.0005)]
-    numbers = sum(_cost(0.0, np.tile([1.0, 3.0], 4) * 4, n, 0.0005) for n in (200, 200))
-    numbers -= _cost(0.0, np.tile([1.0, 3.0], 4) * 4, 400, 0.0005)
+    numbers = 2 * price((4, False), 200, 0.0005) - price((4, False), 400, 0.0005)
     unseen = UNSEEN_COST * sum(2 * SQUARE.perimeter - 2 * h.length for h in halves) / 2
     crooked = 2 * NAMELESS_PART_COST - NAMELESS_COST  # four sides without right angles, of which half was seen
     overlap = 2 * 400 * np.log(sum(h.length for h in halves) / SQUARE.perimeter)  # ends seen by both

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 import primkit as pk
 from primkit.robust.cuts import features_of
 from primkit.robust.outlines import Outlines
-from primkit.robust.refine import one_side_more, refine_hard, refine_soft, refit, shares, truncated_cost
+from primkit.robust.refine import one_side_more, refine_hard, refine_soft, refit, shares
 from tests.test_outlines import outline_of
 
 TENTH_OF_A_CELL = 1e-4  # m: shares blur a corner a little even where the points are exact
@@ -150,7 +150,7 @@ def test_the_density_of_one_point_integrates_to_the_outlines_length():
 def test_truncated_cost_by_hand():
     square = Outlines(np.arange(4)[None] * np.pi / 2, np.full((1, 4), 0.1))
     points = np.array([(0.1, 0.0), (0.103, 0.0), (0.0, 0.0)])
-    assert truncated_cost(points, square, 0.01)[0] == pytest.approx(0.003**2 + 0.01**2)
+    assert square.truncated_cost(points, 0.01)[0] == pytest.approx(0.003**2 + 0.01**2)
 
 
 def test_points_out_of_reach_do_not_count():

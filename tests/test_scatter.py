@@ -61,5 +61,5 @@ def test_without_noise_only_the_cells_are_left():
 
 def test_points_beyond_any_bell_curve_weigh_a_finite_amount():
     density, weight = scatter(np.array([1.0]), 0.001)
-    assert density[0] == 0
+    assert 0 < density[0] < 1e-300, "nothing is divided by zero"
     assert np.isfinite(weight[0])

@@ -220,7 +220,7 @@ def test_two_neighbours_beside_an_outline_are_a_corner_that_it_does_not_have():
 def test_a_polygon_that_is_not_convex_has_its_distances():
     ell = pk.Polygon(CORNERED["L"])
     points = np.random.default_rng(0).uniform(-0.12, 0.12, (300, 2))
-    np.testing.assert_allclose(outline_of(ell).distance(points)[0], np.abs(ell.signed_distance(points)), atol=1e-12)
+    np.testing.assert_allclose(outline_of(ell).signed_distance(points), np.abs(ell.signed_distance(points)), atol=1e-12)
     assert outline_of(ell).kind == "polygon"
     assert outline_of(ell).closes()[0]
     assert not outline_of(ell).sound()[0]

@@ -49,12 +49,7 @@ VERDICT_SIGNS = {"not attempted": "○", "wrong": "✗", "error": "!", "right": 
 # Okabe and Ito's colours, drawn towards the page's own letters: so they can be read in a light theme and in a dark one.
 VERDICT_COLORS = {
     verdict: f"color-mix(in srgb, {color} 60%, currentColor)"
-    for verdict, color in {
-        "not attempted": "#5A5A5A",
-        "wrong": "#A34700",
-        "error": "#A34700",
-        "right": "#00694D",
-    }.items()
+    for verdict, color in zip(VERDICT_SIGNS, ("#5A5A5A", "#A34700", "#A34700", "#00694D"), strict=True)
 }
 
 

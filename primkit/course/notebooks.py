@@ -94,6 +94,7 @@ def slim(path: Path, cells: Cells) -> Read:
         if old:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
+                # nbformat ships no types
                 notebook = nbformat.convert(nbformat.from_dict(notebook), 4)  # type: ignore[no-untyped-call]
         found = list(marked(notebook))
     except Exception as error:  # whatever a file holds, and nbformat meets in it

@@ -31,34 +31,20 @@ from ..arguments import Floats
 from ..circles import fit_circle, nearer_circle
 from ..lines import Line, fit_line
 from ..seen import REACH
+from ..segmentation import LEAST_GROUP
 from ..shapes import KINDS, Circle
-from .cuts import Cut, best_cuts, by_bearing, chords, frames, in_company, outlines_with
-from .evidence import (
-    CERTAIN,
-    NAMELESS_COST,
-    NEARLY_ALL,
-    OF_CIRCLE,
-    OF_SQUARE,
-    OF_WALL,
-    Candidate,
-    Figure,
-    judged,
-    of_sides,
-    price,
-)
+from .cuts import Cut, best_cuts, chords, frames, in_company, outlines_with
+from .evidence import CERTAIN, NAMELESS_COST, NEARLY_ALL, Candidate, Figure, Way, judged, price
 from .free import free_candidate
 from .lack_of_fit import lack_of_fit
 from .outlines import QUARTERS, Outlines, joined
-from .refine import one_side_more, refine_hard, refine_soft, truncated_cost
-from .scatter import GHOSTS, LEAST_SPREAD, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
+from .refine import SOFT_ROUNDS, one_side_more, refine_hard, refine_soft
+from .scatter import ENOUGH_POINTS, LEAST_SPREAD, SIGMAS, shares_smooth
 
-LEAST_POINTS = 8  # fewer fix nothing: a pentagon alone has ten numbers
 MOST_RADIUS = 0.25  # m: a larger circle than a quarter of the board is a wall
 LEAST_ARC = np.radians(60)  # a shorter arc fits a wide range of circles
-CIRCLE_ROUNDS = 10  # after three or four, hardly a point changes its weight
 SETTLED_MOVE = 1e-7  # m: what moves by less has settled; the next round moves it by a small part of that
 MOST_POINTS = 10_000  # of more, an even part is explained, so that the work is bounded
-ENOUGH_POINTS = 400  # more do not make a first fit much better, and cost time
 STARTS_KEPT = 5  # of the guesses, those closest to the points are refined
 WIDER = 0.005  # m: guesses are judged with a longer reach than fits, because they still lie beside the points
 BLURRED = 0.002  # m: beyond this spread a short side drowns in its neighbours' points, each given to one side alone
@@ -77,46 +63,31 @@ def candidates(
     thorough: bool = True,
     kinds: Sequence[str] = KINDS,
 ) -> list[Candidate]:
-    """Return explanations of a cluster's points, the best first.
+    """Return explanations of a cluster's points, the best first; none for fewer than eight different points.
 
-    Parameters
-    ----------
-    points : array, shape (N, 2)
-        Metres.
-    spread : float
-        Standard deviation of the points from the outline, metres.
-    soft : bool
-        Share points between sides in the last polish, as ``refine.refine_soft`` does.
-    thorough : bool
-        Fit every kind, and not only those that may win.
-    kinds : sequence of str
-        The kinds that can be there.
-
-    Returns
-    -------
-    list of Candidate
-        A wall, a circle, and polygons of three to five sides, as far as each can be fitted, and where the best of
-        them does not fit, the best outline of any straight pieces; empty for fewer than eight different points. Those
-        that come near the best are fitted to the last digit. Of very many points, an even part is explained.
+    They are a wall, a circle, and polygons of three to five sides, as far as each can be fitted, and where the best of
+    them does not fit, the best outline of any straight pieces. Those that come near the best are fitted to the last
+    digit. Of very many points, an even part is explained. Whoever is ``thorough`` has every kind fitted, and not only
+    those that may win.
     """
-    if len(np.unique(points[:, 0] + 1j * points[:, 1])) < LEAST_POINTS:
+    if np.count_nonzero(np.diff(np.sort(points[:, 0] + 1j * points[:, 1]))) < LEAST_GROUP - 1:
         return []
     points = points[:: -(-len(points) // MOST_POINTS)]
     middle = points.mean(axis=0)
-    local = points - middle  # digits are not lost far from the origin
-    fits = list(_fits(local, spread, thorough, ("wall", *kinds)))
+    points = points - middle  # digits are not lost far from the origin
+    fits = list(_fits(points, spread, thorough, ("wall", *kinds)))
     if len(fits) == 1:  # it has no rival, and is judged once, when it is polished
         waiting = [Candidate(*fits[0], cost=0.0, length=0.0, n_on=0.0)]
     else:
-        waiting = [judged(local, figure, spread, square=square) for figure, square in fits]
+        waiting = [judged(points, figure, spread, square=square) for figure, square in fits]
     waiting.sort(key=lambda c: c.cost)
     done = list[Candidate]()
     while waiting and waiting[0].cost <= min((c.cost for c in done), default=np.inf) + CONTENDER:
-        finest = polished(local, waiting.pop(0), spread, soft=soft)
+        finest = polished(points, waiting.pop(0), spread, soft=soft)
         done += [] if finest is None else [finest]
     ranked = sorted(done + waiting, key=lambda c: c.cost)
-    if "polygon" in kinds and not (ranked and _explains(local, ranked[0], spread)):
-        ranked = sorted([*ranked, *free_candidate(local, spread)], key=lambda c: c.cost)
+    if "polygon" in kinds and not (ranked and _explains(points, ranked[0], spread)):
+        ranked = sorted([*ranked, *free_candidate(points, spread)], key=lambda c: c.cost)
     return [c.moved(middle) for c in ranked if c.kind in ("wall", *kinds)]
 
 
@@ -125,26 +96,25 @@ def _fits(points: Floats, spread: float, thorough: bool, kinds: Sequence[str]) -
 
     The fits are made on some of the points, where there are many. Far rivals are fitted only if that is asked.
     """
-    kept = by_bearing(points)
-    kept = kept[:: -(-len(kept) // ENOUGH_POINTS)]
+    points = points[np.argsort(np.arctan2(points[:, 1], points[:, 0]), kind="stable")]  # in the order of their bearings
+    points = points[:: -(-len(points) // ENOUGH_POINTS)]
     for _ in range(LOOKS):
-        fits = Ways.through(kept, spread).fits(kinds, thorough)
+        fits = Ways.through(points, spread).fits(kinds, thorough)
         if not fits:
             return
         best, nearest = min(fits.values(), key=lambda fit: fit[0])
         for (_, square), (cost, figure) in fits.items():
             if cost <= best + RIVAL or thorough:
                 yield figure, square
-        on_it = np.abs(_distance(nearest, kept)) <= SIGMAS * spread
+        on_it = np.abs(nearest.signed_distance(points)) <= SIGMAS * spread
         if on_it.mean() >= NEARLY_ALL_POINTS:
             return
-        near = in_company(kept, spread)
-        kept = kept[on_it if near.all() else near]
-        if len(kept) < LEAST_POINTS:
+        near = in_company(points, spread)
+        points = points[on_it if near.all() else near]
+        if len(points) < LEAST_GROUP:
             return
 
 
-Way = tuple[int, bool]  # number of sides, 0 of a circle and 1 of a wall; and whether at right angles
 KIND_OF = ("circle", "wall", "", "triangle", "polygon", "pentagon")  # by the number of sides, but at right angles
 
 
@@ -169,12 +139,11 @@ class Ways:
         unseen = REACH + SIGMAS * (spread - LEAST_SPREAD)
         cuts, spans = best_cuts(points, unseen), chords(points, unseen)
         ways = cls(points, spread, cuts, spans, {}, {}, set())
-        circle, wall = fit_circle(points, "taubin"), fit_line(points)
-        if circle is not None:
+        if (circle := fit_circle(points, "taubin")) is not None:
             ways.least[0, False] = ways.cost(circle, (0, False))
             if np.abs(circle.signed_distance(points)).max() <= SIGMAS * spread:
                 ways.done[0, False] = ways.least[0, False], circle if circle.radius <= MOST_RADIUS else None
-        if wall is not None:
+        if (wall := fit_line(points)) is not None:
             ways.least[1, False] = ways.cost(wall, (1, False))
             ways.done[1, False] = ways.least[1, False], wall
         for k in (3, 4, 5):
@@ -207,13 +176,11 @@ class Ways:
 
     def cost(self, figure: Figure | None, way: Way) -> float:
         """Return what a fit costs; infinite without one."""
-        return np.inf if figure is None else self._cost(float((_distance(figure, self.points) ** 2).sum()), way)
+        return np.inf if figure is None else self._cost(float((figure.signed_distance(self.points) ** 2).sum()), way)
 
     def _cost(self, squares: float, way: Way) -> float:
-        k, square = way
-        fitted = (OF_CIRCLE, OF_WALL)[k] if k <= 1 else OF_SQUARE if square else of_sides(k)
-        nameless = NAMELESS_COST if k == 4 and not square else 0.0
-        return squares / self.spread**2 + price(fitted, len(self.points), self.spread) + nameless
+        nameless = NAMELESS_COST if way == (4, False) else 0.0
+        return squares / self.spread**2 + price(way, len(self.points), self.spread) + nameless
 
     def fitted(self, way: Way, *, again: bool) -> tuple[float, Figure | None]:
         """Return what the fit costs, and the fit; None where there is none.
@@ -228,9 +195,13 @@ class Ways:
         cost, fit = self.done[way]
         if again and cost > self.least[way] + CHANCE and starts is not None and way not in self.again:
             self.again.add(way)
-            begin = frames(self.points, starts) if square else self._one_side_more(k)
-            begin = joined(fit, begin) if isinstance(fit, Outlines) else begin
-            fit = _refined(self.points, begin, self.spread, square=square)
+            begin = [fit] if isinstance(fit, Outlines) else []
+            fewer = self.fitted((k - 1, False), again=True)[1] if k > 3 and not square else None
+            if square:
+                begin.append(frames(self.points, starts))
+            elif isinstance(fewer, Outlines):
+                begin.append(one_side_more(self.points, fewer))
+            fit = _refined(self.points, joined(*begin), self.spread, square=square) if begin else None
             self.done[way] = self.cost(fit, way), fit
         return self.done[way]
 
@@ -240,16 +211,6 @@ class Ways:
             return starts
         begin = Outlines(starts.angles[:, :1] + QUARTERS, starts.offsets) if square else starts
         return _refined(self.points, begin, self.spread, square=square)
-
-    def _one_side_more(self, k: int) -> Outlines:
-        """Return starts with k sides, from the best outline that has one less."""
-        fewer = self.fitted((k - 1, False), again=True)[1] if k > 3 else None
-        return one_side_more(self.points, fewer) if isinstance(fewer, Outlines) else Outlines(*np.empty((2, 0, k)))
-
-
-def _distance(figure: Figure, points: Floats) -> Floats:
-    """Return how far points are from a figure, shape (N,), metres."""
-    return figure.distance(points)[0] if isinstance(figure, Outlines) else figure.signed_distance(points)
 
 
 def _circle_through(points: Floats) -> Circle | None:
@@ -268,11 +229,11 @@ def _refined(points: Floats, starts: Outlines, spread: float, *, square: bool) -
     reach = SIGMAS * spread
     near = starts
     if len(starts) > 1:
-        near = starts[np.argsort(truncated_cost(points, starts, reach + WIDER), kind="stable")[:STARTS_KEPT]]
+        near = starts[np.argsort(starts.truncated_cost(points, reach + WIDER), kind="stable")[:STARTS_KEPT]]
     fits = refine_hard(points, near, reach, square=square)
     fits = fits[fits.sound()]
     if len(fits):
-        best = int(np.argmin(truncated_cost(points, fits, reach))) if len(fits) > 1 else 0
+        best = int(np.argmin(fits.truncated_cost(points, reach))) if len(fits) > 1 else 0
         return fits[best : best + 1]
     sound = near[near.sound()]
     if spread < BLURRED or len(sound) == 0:
@@ -283,27 +244,15 @@ def _refined(points: Floats, starts: Outlines, spread: float, *, square: bool) -
 def explained_again(
     points: Floats, before: Sequence[Candidate], spread: float, *, soft: bool = True
 ) -> list[Candidate]:
-    """Return the best explanation and its best rival, fitted anew from what they were with fewer points.
-
-    Parameters
-    ----------
-    points : array, shape (N, 2)
-        Metres: those that were explained before, and a few more.
-    before : sequence of Candidate
-        What ``candidates`` returned for them.
-    spread : float
-        As for ``candidates``; so is the next.
-    soft : bool
-        Share points between sides.
-    """
+    """Return the best explanation and its best rival, fitted anew from what they were ``before``, with fewer points."""
     shapes = [c for c in before if c.shape is not None]
     kept = shapes[:1] + [c for c in shapes if c.kind != shapes[0].kind][:1]
     middle = points.mean(axis=0)
-    local, again = points - middle, list[Candidate]()
+    points, again = points - middle, list[Candidate]()
     for old in (c.moved(-middle) for c in kept):
-        anew: Candidate | None = judged(local, old.figure, spread, square=old.square)
-        if anew is not None and (not again or anew.cost < again[0].cost + CONTENDER):
-            anew = polished(local, old, spread, soft=soft)
+        rough = judged(points, old.figure, spread, square=old.square) if again else old
+        near = not again or rough.cost < again[0].cost + CONTENDER
+        anew = polished(points, old, spread, soft=soft) if near else rough
         again += [] if anew is None else [anew]
     return [c.moved(middle) for c in sorted(again, key=lambda c: c.cost)]
 
@@ -337,10 +286,9 @@ def polished(points: Floats, rough: Candidate, spread: float, *, soft: bool = Tr
 
 def _polished_circle(points: Floats, circle: Circle, spread: float) -> Circle | None:
     """Return the geometric fit in which points from nowhere do not count; None when it grows beyond a board."""
-    for _ in range(CIRCLE_ROUNDS):
-        across, told = scatter(circle.signed_distance(points), spread)
-        density = (1 - GHOSTS) * across / OUTLINE_LENGTH
-        fitted = nearer_circle(circle, points, told * density / (density + NOWHERE))
+    for _ in range(SOFT_ROUNDS):
+        share, told, _ = shares_smooth(circle.signed_distance(points), spread)
+        fitted = nearer_circle(circle, points, share * told)
         if fitted is None or fitted.radius > MOST_RADIUS:
             return None
         change = max(abs(fitted.radius - circle.radius), *np.abs(fitted.center - circle.center).tolist())

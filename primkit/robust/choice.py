@@ -40,33 +40,15 @@ ENOUGH_ARC = np.radians(135)
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """How a shape was chosen for the points of a cluster: it knows how clear the choice was.
-
-    Parameters
-    ----------
-    points : array, shape (N, 2)
-        All points of the cluster, metres.
-    ranked : list of Candidate
-        The explanations that were fitted, the best first.
-    spread : float
-        Standard deviation of the points from the outline, metres.
-    soft : bool
-        Whether points were shared between sides.
-    thorough : bool
-        Whether all rivals were fitted, and not only those that came into question.
-    kinds : sequence of str
-        The kinds that can be there; others are no rivals.
-    n_thorough : int
-        How many points there were when all explanations were looked for.
-    """
+    """How a shape was chosen for the points of a cluster: it knows how clear the choice was."""
 
     points: Floats
-    ranked: list[Candidate]
+    ranked: list[Candidate]  # the explanations that were fitted, the best first
     spread: float
     soft: bool = True
-    thorough: bool = True
+    thorough: bool = True  # whether all rivals were fitted, and not only those that came into question
     kinds: Sequence[str] = KINDS
-    n_thorough: int = 0
+    n_thorough: int = 0  # how many points there were when all explanations were looked for
 
     @cached_property
     def shape(self) -> Shape | None:
@@ -201,23 +183,16 @@ def explained(
 def grown(old: Choice, points: Floats, spread: float, *, soft: bool = True) -> Choice | None:
     """Return a choice for a group that has a few points more than it had, its explanation fitted anew from what it was.
 
-    Returns
-    -------
-    Choice or None
-        None where all explanations should be looked for: many points are new, others are gone, what the group is was
-        in doubt, or it is so now.
+    None where all explanations should be looked for: many points are new, others are gone, what the group is was in
+    doubt, or it is so now.
     """
-    in_doubt = not old.ranked or old.lead < SURE
-    if in_doubt or not 1 <= len(points) / old.n_thorough <= 1 + FEW_NEW or not _holds(points, old.points):
+    if not old.ranked or old.lead < SURE or not 1 <= len(points) / old.n_thorough <= 1 + FEW_NEW:
+        return None
+    before, now = (np.ascontiguousarray(p).view(complex) for p in (old.points, points))  # a point is one number
+    if not np.isin(before, now).all():
         return None
     ranked = explained_again(points, old.ranked, spread, soft=soft)
     anew = replace(old, points=points, ranked=ranked)
     if not ranked or ranked[0].kind != old.ranked[0].kind or anew.lead < SURE:
         return None
     return anew if anew.on_it.mean() >= old.on_it.mean() - FEW_OFF else None
-
-
-def _holds(points: Floats, fewer: Floats) -> bool:
-    """Tell whether all of the fewer points are among the points; in both no point stands twice."""
-    one, other = (np.ascontiguousarray(p).view(complex) for p in (fewer, points))  # a point as one number: 5 x faster
-    return bool(np.isin(one, other).all())

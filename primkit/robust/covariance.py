@@ -53,10 +53,6 @@ import numpy as np
 from ..arguments import Bools, Floats, Ints
 from .scatter import CELL, CELL_STD, LEAST_SPREAD, MEAN_ACROSS
 
-# How large waves are, in cells; the last one stands for all that follow: the saw-tooth's variance is 1/12.
-WAVES = np.arange(1, 5)
-WAVE_STD = 1 / (2**0.5 * np.pi * WAVES)
-WAVE_STD[-1] = (1 / 12 - (WAVE_STD[:-1] ** 2).sum()) ** 0.5
 PHASE_STD = 0.5  # cells: as far as it is not known where in its cell a point lies along its side
 EVEN_OUT = 0.85  # share of the cells' errors that evens out when all cells are hit: not that around corners
 # About half of what Student's t would add in the variance: a pose far off raises the residuals as well as the error.
@@ -66,46 +62,20 @@ BEAM_STEP = 0.008  # m: about as far apart one scan of the paper's sensor hits a
 
 @dataclass(frozen=True, eq=False)
 class Linearised:
-    """A fit to first order.
+    """A fit to first order."""
 
-    Parameters
-    ----------
-    effect, slopes : array, shape (P, N) and (N, P)
-        How the numbers follow each point's error, and how residuals follow the numbers.
-    pulls : array, shape (P, N)
-        By how much each point holds the numbers off where the others would have them; ``effect * residuals``, where
-        the fit does not hold back far points.
-    residuals : array, shape (N,)
-        How far each point lies outside, metres.
-    normals, points : array, shape (N, 2)
-        The outward normal at each point, and the points, metres.
-    pieces : array of int, shape (N,)
-        Which piece of the outline, straight or nearly so, each lies on.
-    length : float
-        Of the outline, metres.
-    """
-
-    effect: Floats
-    slopes: Floats
-    pulls: Floats
-    residuals: Floats
-    normals: Floats
+    effect: Floats  # (P, N), how the numbers follow each point's error
+    slopes: Floats  # (N, P), how residuals follow the numbers
+    pulls: Floats  # (P, N), ``effect * residuals``, where the fit does not hold back far points
+    residuals: Floats  # (N,), how far each point lies outside
+    normals: Floats  # (N, 2), outwards at each point
     points: Floats
-    pieces: Ints
-    length: float
+    pieces: Ints  # (N,), on which piece of the outline, straight or nearly so, each lies
+    length: float  # of the outline
 
 
 def covariance(fit: Linearised, scans: Ints, noise_std: float = 0.0) -> Floats:
-    """Return the covariance of the fitted numbers, shape (P, P).
-
-    Parameters
-    ----------
-    fit : Linearised
-    scans : array of int, shape (N,)
-        The number of the scan that saw each point, from 1; 0 where it is not known.
-    noise_std : float
-        By how much ranges err on their own, as far as that is told, metres.
-    """
+    """Return the covariance of the fitted numbers, shape (P, P), where ranges err by ``noise_std`` on their own."""
     from scipy.sparse import csr_array
 
     a, b, r = fit.effect, fit.slopes, fit.residuals
@@ -145,11 +115,14 @@ def covariance(fit: Linearised, scans: Ints, noise_std: float = 0.0) -> Floats:
 
 
 def _waves(fit: Linearised, noise: float) -> Floats:
-    """Return W, shape (N, Q), for noise of this variance, square metres."""
+    """Return W, shape (N, Q), for noise of this variance, square metres: the last of four waves stands for the rest."""
+    m = np.arange(1, 5)
+    std = 1 / (2**0.5 * np.pi * m)  # cells
+    std[-1] = (1 / 12 - (std[:-1] ** 2).sum()) ** 0.5  # 1/12 is the saw-tooth's variance
     across = fit.normals[..., None]  # in x and in y; along it is the other's
     unknown = noise * across**2 + (PHASE_STD * CELL * across[:, ::-1]) ** 2
-    turn = 2 * np.pi * WAVES / CELL
-    size = CELL * WAVE_STD * across * np.exp(-(turn**2) * unknown / 2)
+    turn = 2 * np.pi * m / CELL
+    size = CELL * std * across * np.exp(-(turn**2) * unknown / 2)
     phase = turn * (fit.points - fit.residuals[:, None] * fit.normals)[..., None]
     waves = np.concatenate([size * np.cos(phase), size * np.sin(phase)], axis=2).reshape(len(phase), -1)
     on_piece = fit.pieces[:, None] == np.unique(fit.pieces)

@@ -10,7 +10,7 @@ Out: a ``Cut`` for each number of pieces: the pieces' lines, and how well they f
 
 >>> from primkit.shapes import Polygon
 >>> ring = Polygon([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)]).outline(80)
->>> best = best_cuts(by_bearing(ring))
+>>> best = best_cuts(ring)
 >>> [k for k in best if best[k].squares < 1e-12], outlines_with(best, (), 4).polygon().kind
 ([4, 5], 'rectangle')
 
@@ -28,13 +28,12 @@ from numpy.typing import NDArray
 from ..arguments import Floats
 from ..seen import REACH
 from .outlines import LEAST_STRETCH, QUARTERS, Outlines, from_angle_order, joined
+from .scatter import GHOSTS
 
 KNOTS = 60  # cuts lie between two of so many places along the outline, a centimetre apart or less
 MOST_PIECES = 5
 MOST_CHORDS = 2
-ALONG_BEARING = REACH / 2  # m: a stretch that was not seen is wider than this across the bearings
 COMPANY, LEAST_COMPANY = 0.009, 3  # m: a point with fewer others as near is a stray
-DRAWN_IN = 50  # a frame is drawn in by one point in so many
 
 Line = tuple[float, float]  # bearing of the normal, and offset
 
@@ -43,21 +42,13 @@ Line = tuple[float, float]  # bearing of the normal, and offset
 class Cut:
     """The best way to cut the points into k pieces.
 
-    Parameters
-    ----------
-    moments : array, shape (6, K)
-        Sums of 1, x, y, xx, yy and xy over the points of each piece.
-    squares : float
-        Sum of the squared distances of the points from their piece's line, square metres; points near the cuts are
-        supposed to be as close as the others. The pieces need not meet in corners, nor bend: an outline with so many
-        sides hardly comes closer to the points.
-    share : float
-        How many of the points belong to a piece, as a share.
+    Points near the cuts are supposed to be as close as the others. The pieces need not meet in corners, nor bend: an
+    outline with so many sides hardly comes closer to the points.
     """
 
-    moments: Floats
-    squares: float
-    share: float
+    moments: Floats  # (6, K), sums of 1, x, y, xx, yy and xy over the points of each piece
+    squares: float  # sum of the squared distances of the points from their piece's line
+    share: float  # of the points that belong to a piece
 
     @property
     def right_angled(self) -> float:
@@ -88,18 +79,14 @@ def in_company(points: Floats, spread: float) -> NDArray[np.bool_]:
     return near  # itself is the first
 
 
-def by_bearing(points: Floats) -> Floats:
-    """Return points, shape (N, 2), metres, in the order of their bearings about the origin."""
-    return points[np.argsort(np.arctan2(points[:, 1], points[:, 0]), kind="stable")]
-
-
 def chords(ordered: Floats, unseen: float = REACH) -> list[Line]:
     """Return the lines over the widest gaps between neighbours, those wider than ``unseen``, metres.
 
-    Where the next point lies on nearly the same bearing, noise alone parts them.
+    Where the next point lies on nearly the same bearing, noise alone parts them: across it a gap is half as wide as
+    ``REACH``, or wider.
     """
     (x, y), (next_x, next_y) = ordered.T, np.concatenate([ordered[1:], ordered[:1]]).T
-    beside = np.abs(x * next_y - y * next_x) > ALONG_BEARING * np.hypot(x, y)
+    beside = np.abs(x * next_y - y * next_x) > REACH / 2 * np.hypot(x, y)
     gap = _gaps(ordered) * beside
     widest = [i for i in np.argsort(-gap, kind="stable")[:MOST_CHORDS].tolist() if gap[i] > unseen]
     ends = [(ordered[i], ordered[(i + 1) % len(ordered)]) for i in widest]
@@ -141,11 +128,12 @@ def _cuts_from(ordered: Floats, first: int) -> dict[int, Cut]:
     moments = moments_between(ordered, knots)
     squares = np.where(long_enough(ordered, knots), squares_of(moments), np.inf)
     best, last_cuts, cuts = squares[0], list[NDArray[np.intp]](), dict[int, Cut]()
+    backwards = np.ascontiguousarray(squares.T)
     for k in range(1, MOST_PIECES + 1):  # best[j]: the least squares of k pieces that end at knot j
         if k > 1:
-            longer = best[:, None] + squares
-            last_cuts.append(longer.argmin(axis=0))
-            best = longer.min(axis=0)
+            longer = best + backwards
+            last_cuts.append(longer.argmin(axis=1))
+            best = longer.min(axis=1)
         if np.isfinite(best[-1]):
             ends = _traced(last_cuts) if last_cuts else [0, n_knots - 1]
             pieces = moments[:, ends[:-1], ends[1:]]
@@ -161,10 +149,10 @@ def outlines_with(cuts: dict[int, Cut], spans: list[Line] | tuple[()], k: int) -
 
 
 def frames(points: Floats, outlines: Outlines) -> Outlines:
-    """Return rectangles around the points along the bearings of all sides; and drawn in, to lie in the sides."""
+    """Return rectangles around the points along the bearings of all sides; and drawn in, by the share of strays."""
     angles = outlines.angles.reshape(-1, 1) + QUARTERS
     heights = points @ np.stack([np.cos(angles), np.sin(angles)], axis=1)  # (M, N, 4)
-    drawn_in, last = len(points) - 1 - len(points) // DRAWN_IN, len(points) - 1
+    drawn_in, last = len(points) - 1 - int(GHOSTS * len(points)), len(points) - 1
     heights = np.partition(heights, (drawn_in, last), axis=1)
     return joined(Outlines(angles, heights[:, last]), Outlines(angles, heights[:, drawn_in]))
 

@@ -2,7 +2,7 @@
 
 In:  a fitted figure, the points that lie on it, how far they spread, and by which scan each was seen.
 Out: ``Certainty``: standard deviations of the centre's coordinates and of the dimensions, metres; infinite for a
-dimension that hangs on a side that was never seen, and for one that is not even known to a centimetre.
+dimension that hangs on a side that was never seen, and for one that is known no better than before any was.
 
 >>> from primkit.shapes import Circle
 >>> ring = Circle((0, 0), 0.05).outline(100)
@@ -33,9 +33,10 @@ from ..arguments import Floats, Ints
 from ..seen import seen_shares
 from ..shapes import Circle
 from .covariance import Linearised, covariance
+from .evidence import PRIOR_WIDTH
 from .outlines import Outlines
-from .refine import shares
-from .scatter import GHOSTS, NOWHERE, OUTLINE_LENGTH, SIGMAS, scatter
+from .refine import LEAST_OF_SIDE, shares
+from .scatter import SIGMAS, shares_smooth
 
 # A side was seen when so many points lie on it, over such a length [m] and such a share of it, and not near a corner,
 # where they may as well belong to the neighbour: a line over a hidden side touches the last points of both neighbours.
@@ -45,26 +46,16 @@ LEAST_SEEN_STRETCH = 0.008
 LEAST_SHARE = 0.4
 LEAST_OF_CIRCLE = 0.45
 CORNER_SPREADS = 4.0
-LEAST_OWN = 2  # points: next to no two of a neighbour's lie farther from its line than noise brings them
-MOST_STD = 0.01  # m: what is not even known to a centimetre was not measured, but supposed
-AHEAD, LEAST_RISE, MOST_WIDER = 3.0, 0.6, 3.0  # deviations; share of the rise that should be; times
+LEAST_RISE = 0.6  # of what -2 ln L should rise by, ``SIGMAS`` deviations off
 STEP = 1e-6  # rad and m, and spreads: the derivatives' step, far above rounding and far below any curvature
 
 
 @dataclass(frozen=True)
 class Certainty:
-    """How sure a shape's numbers are.
+    """How sure a shape's numbers are, as standard deviations."""
 
-    Parameters
-    ----------
-    center_std : tuple of float
-        Standard deviations of x and y of the centroid, metres; infinite when a side was not seen.
-    dimension_std : tuple of float
-        Standard deviation of each dimension, metres; infinite when it was not measured.
-    """
-
-    center_std: tuple[float, ...]
-    dimension_std: tuple[float, ...]
+    center_std: tuple[float, ...]  # of x and y of the centroid; infinite when a side was not seen
+    dimension_std: tuple[float, ...]  # of each dimension; infinite when it was not measured
 
 
 def certainty(
@@ -76,30 +67,18 @@ def certainty(
     scans: Ints | None = None,
     noise_std: float = 0.0,
 ) -> Certainty:
-    """Return the standard deviations of a fitted figure's centre and dimensions.
+    """Return the standard deviations of centre and dimensions of a figure that was fitted to the points on it.
 
-    Parameters
-    ----------
-    figure : Circle or Outlines (one row)
-        The fit.
-    points : array, shape (N, 2)
-        The points on it, metres.
-    spread : float
-        Standard deviation of the points from the outline, metres.
-    square : bool
-        Whether the outline was fitted with right angles.
-    scans : array of int, shape (N,), optional
-        The number of the scan that saw each point; 0 where it is not known.
-    noise_std : float
-        By how much ranges err on their own, as far as that is known, metres: what points of unknown scans scatter
-        beyond may be shared by all points of a scan.
+    ``noise_std`` is by how much ranges err on their own, as far as that is known, metres: what points of unknown scans
+    scatter beyond may be shared by all points of a scan.
     """
     scans = np.zeros(len(points), dtype=np.int64) if scans is None else scans
     if isinstance(figure, Circle):
         x, y, radius = np.sqrt(np.diag(covariance(_of_circle(figure, points, spread), scans, noise_std))).tolist()
-        enough = seen_shares(figure, points)[0] >= LEAST_OF_CIRCLE and radius <= MOST_STD
+        enough = seen_shares(figure, points)[0] >= LEAST_OF_CIRCLE and radius <= PRIOR_WIDTH
         return Certainty((x, y), (radius if enough else float("inf"),))
-    fitted = _fitted_numbers(figure, square)
+    each = np.eye(2 * figure.angles.shape[1])  # K angles and K offsets; right angles have one angle for all
+    fitted = np.column_stack([each[:, :4].sum(axis=1), each[:, 4:]]) if square else each
     spreads = fitted @ covariance(_of_sides(figure, points, spread, fitted), scans, noise_std) @ fitted.T
     seen = sides_seen(figure, points, spread)
     rectangle = figure.kind == "rectangle"
@@ -108,7 +87,7 @@ def certainty(
     shifts = np.vstack([center, dimension]) @ spreads
     std = np.sqrt((shifts * np.vstack([center, dimension])).sum(axis=1))
     std *= _wider(figure, points, spread, shifts / std[:, None])
-    std = np.where(np.append(np.full(2, seen.all()), measured) & (std <= MOST_STD), std, np.inf)
+    std = np.where(np.append(np.full(2, seen.all()), measured) & (std <= PRIOR_WIDTH), std, np.inf)
     return Certainty(tuple(std[:2].tolist()), tuple(std[2:].tolist()))
 
 
@@ -141,7 +120,7 @@ def without_points(figure: Outlines, points: Floats, spread: float) -> NDArray[n
     """
     begin, end = figure.spans()
     long = (end - begin)[0] >= (2 * SIGMAS + 1) * spread
-    return np.asarray(long & (own_points(figure, points, spread, SIGMAS).sum(axis=0) < LEAST_OWN))
+    return np.asarray(long & (own_points(figure, points, spread, SIGMAS).sum(axis=0) < LEAST_OF_SIDE))
 
 
 def sides_seen(figure: Outlines, points: Floats, spread: float) -> NDArray[np.bool_]:
@@ -169,9 +148,8 @@ def _of_circle(circle: Circle, points: Floats, spread: float) -> Linearised:
     def equations(step: Floats, at: Floats) -> Floats:
         figure = Circle(circle.center + step[:2], circle.radius + step[2])
         r = figure.signed_distance(at)
-        across, told = scatter(r, spread)
-        density = (1 - GHOSTS) * across / OUTLINE_LENGTH
-        return (density / (density + NOWHERE) * told * r)[:, None] * slopes(figure, at)
+        share, told, _ = shares_smooth(r, spread)
+        return (share * told * r)[:, None] * slopes(figure, at)
 
     b = slopes(circle, points)
     normals = -b[:, :2]
@@ -181,7 +159,7 @@ def _of_circle(circle: Circle, points: Floats, spread: float) -> Linearised:
 
 
 def _of_sides(outline: Outlines, points: Floats, spread: float, fitted: Floats) -> Linearised:
-    """Return an outline's fit to first order; see ``_fitted_numbers``."""
+    """Return an outline's fit to first order; ``fitted`` is how angles and offsets hang on the fitted numbers."""
     k = outline.angles.shape[1]
 
     def equations(step: Floats, at: Floats) -> Floats:
@@ -198,12 +176,6 @@ def _of_sides(outline: Outlines, points: Floats, spread: float, fitted: Floats) 
     begin, end = outline.spans()
     r = outline.distances(points)[0][row, own]
     return Linearised(effect, b @ fitted, pulls, r, normals, points, own, float((end - begin).sum()))
-
-
-def _fitted_numbers(outline: Outlines, square: bool) -> Floats:
-    """Return how the K angles and K offsets hang on the numbers that were fitted; right angles have one for all."""
-    each = np.eye(2 * outline.angles.shape[1])
-    return np.column_stack([each[:, :4].sum(axis=1), each[:, 4:]]) if square else each
 
 
 def _effect(
@@ -250,17 +222,17 @@ def _centroids(corners: Floats) -> Floats:
 def _wider(figure: Outlines, points: Floats, spread: float, shifts: Floats) -> Floats:
     """Return how many times wider deviations are than to first order, as the points' likelihood L tells, shape (D,).
 
-    ``shifts``, shape (D, 2 K), is where a deviation of each number brings angles and offsets. ``AHEAD`` deviations off,
-    -2 ln L should have risen by ``AHEAD^2``, or as far as it has to the other side where the cells' errors even out. It
-    may rise more slowly: a shallow corner, next to which few points lie, can slip along. Where it rises by less than
-    ``LEAST_RISE`` of that, the deviation is as wide as the rise says.
+    ``shifts``, shape (D, 2 K), is where a deviation of each number brings angles and offsets. ``SIGMAS`` deviations
+    off, -2 ln L should have risen by ``SIGMAS^2``, or as far as it has to the other side where the cells' errors even
+    out. It may rise more slowly: a shallow corner, next to which few points lie, can slip along. Where it rises by less
+    than ``LEAST_RISE`` of that, the deviation is as wide as the rise says, as far as was looked.
     """
-    steps, k = AHEAD * np.vstack([np.zeros_like(shifts[:1]), shifts, -shifts]), figure.angles.shape[1]
+    steps, k = SIGMAS * np.vstack([np.zeros_like(shifts[:1]), shifts, -shifts]), figure.angles.shape[1]
     moved = Outlines(figure.angles + steps[:, :k], figure.offsets + steps[:, k:])
     share, _, log_likelihood = shares(points, moved, spread)
     begin, end = moved.spans()
     length = np.maximum((end - begin).sum(axis=1), spread)  # over which the points are spread, as in ``evidence``
     cost = 2 * share.sum(axis=(1, 2)) * np.log(length) - 2 * log_likelihood
     less, more = np.sort((cost[1:] - cost[0]).reshape(2, -1), axis=0)
-    risen = less / np.clip(more, 1.0, AHEAD**2)
-    return np.where(risen < LEAST_RISE, np.maximum(risen, MOST_WIDER**-2) ** -0.5, 1.0)
+    risen = less / np.clip(more, 1.0, SIGMAS**2)
+    return np.where(risen < LEAST_RISE, np.maximum(risen, SIGMAS**-2) ** -0.5, 1.0)

@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import Floats
-from .cuts import in_company, long_enough, moments_between, scatter_sums, squares_of
+from .cuts import KNOTS, in_company, long_enough, moments_between, scatter_sums, squares_of
 from .evidence import Candidate, judged
 from .outlines import LEAST_SIDE, Outlines
 from .refine import refine_soft
@@ -45,7 +45,6 @@ BEAD_CELLS, BEAD_SPREADS = 3.0, 4.0  # neighbours this near are one bead of the 
 MOST_BEADS = 300  # more are made larger: the tree's work goes with their number squared
 AT_AN_END = 0.2  # of the path: there a stray may be its end, and is left out where that closes the path
 CLOSED_GAP, WIDEST_GAP = 0.04, 0.06  # m: nearer ends close an outline; and at most, with lone points or without
-PATH_KNOTS = 120  # cuts lie between two of so many places along the path
 PIECE_COSTS = 20.0, 40.0, 80.0, 160.0  # about a side's two numbers (``evidence.price``); where they do not close, more
 FLAT_TURN = np.radians(35)  # where a piece turns by less, or is shorter than two least sides, there may be none
 ENOUGH_TO_CUT = 600  # points; of more, the least misfit is worth a piece
@@ -60,15 +59,7 @@ def free_candidate(points: Floats, spread: float) -> list[Candidate]:
 
 
 def free_outline(points: Floats, spread: float) -> Outlines | None:
-    """Return the best outline of straight pieces around the points; None where they do not close.
-
-    Parameters
-    ----------
-    points : array, shape (N, 2)
-        Metres, around the origin.
-    spread : float
-        Standard deviation of the points from the outline, metres.
-    """
+    """Return the best outline of straight pieces around the points; None where they do not close."""
     kept, found = points, None
     for _ in range(CUT_LOOKS):
         ordered = round_order(kept, spread)
@@ -77,7 +68,7 @@ def free_outline(points: Floats, spread: float) -> Outlines | None:
         if start is None:
             break
         found = _pruned(points, refine_soft(points, start, spread, sound=Outlines.closes), spread)
-        distance = np.abs(found.distance(points)[0])
+        distance = np.abs(found.signed_distance(points))
         if (distance <= SIGMAS * spread).mean() >= 0.98:
             break
         kept = points[distance <= FAR_SPREADS * spread + FAR_CELLS * CELL]
@@ -171,23 +162,22 @@ def _bead_size(spread: float) -> float:
 
 def _beads(points: Floats, size: float) -> Floats:
     """Return the means of the points in squares of this size, shape (M, 2)."""
-    ij = np.floor((points - points.min(axis=0, initial=np.inf)) / size).astype(np.int64)
-    square, n = np.unique(ij, axis=0, return_inverse=True, return_counts=True)[1:]
-    square = square.ravel().astype(np.intp, copy=False)  # numpy 2.0 returns a column
+    i, j = np.floor((points - points.min(axis=0, initial=np.inf)) / size).astype(np.int64).T
+    _, square, n = np.unique(i * (j.max(initial=0) + 1) + j, return_inverse=True, return_counts=True)
+    square = square.astype(np.intp, copy=False)
     return np.column_stack([np.bincount(square, axis, len(n)) / n for axis in points.T])
 
 
 def _along(points: Floats, path: Floats) -> tuple[Floats, Floats]:
     """Return where each point lies along a closed path, and how far from it, shape (N,) each, metres."""
-    edges = np.roll(path, -1, axis=0) - path
-    squared = np.maximum((edges**2).sum(axis=1), np.finfo(float).tiny)
-    offset = points[:, None] - path
-    share = np.clip((offset * edges).sum(axis=2) / squared, 0.0, 1.0)
-    distance = np.hypot(*np.moveaxis(offset - share[..., None] * edges, 2, 0))
-    nearest, row = distance.argmin(axis=1), np.arange(len(points))
+    (edge_x, edge_y), (x, y) = (np.roll(path, -1, axis=0) - path).T, np.moveaxis(points[:, None] - path, 2, 0)
+    squared = np.maximum(edge_x**2 + edge_y**2, np.finfo(float).tiny)
+    share = np.clip((x * edge_x + y * edge_y) / squared, 0.0, 1.0)
+    x, y = x - share * edge_x, y - share * edge_y
+    nearest, row = (x**2 + y**2).argmin(axis=1), np.arange(len(points))
     lengths = np.sqrt(squared)
     place = np.concatenate([[0.0], np.cumsum(lengths)])[nearest] + share[row, nearest] * lengths[nearest]
-    return place, distance[row, nearest]
+    return place, np.hypot(x[row, nearest], y[row, nearest])
 
 
 def _outlines(points: Floats, spread: float) -> Iterator[Outlines]:
@@ -203,7 +193,7 @@ def _outlines(points: Floats, spread: float) -> Iterator[Outlines]:
             yield _joined_lines(points, cuts, pieces)
 
 
-def best_cut(points: Floats, spread: float, price: float, n_knots: int = PATH_KNOTS) -> tuple[NDArray[np.intp], Floats]:
+def best_cut(points: Floats, spread: float, price: float, n_knots: int = 2 * KNOTS) -> tuple[NDArray[np.intp], Floats]:
     """Return at which points the best pieces begin, shape (K,), and their sums, shape (6, K)."""
     step = np.hypot(*(points - np.roll(points, 1, axis=0)).T)
     place = np.append(0.0, np.cumsum(step / step.sum() + 1 / len(points)))  # few points tell of a long side, too

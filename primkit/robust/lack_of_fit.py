@@ -38,19 +38,7 @@ SHARP = np.radians(75)  # a corner that turns so far is no bend
 
 
 def lack_of_fit(points: Floats, figure: Circle | Outlines, spread: float, *, square: bool = False) -> float:
-    """Return how much more a figure would cost if it could bend; below zero, it had better.
-
-    Parameters
-    ----------
-    points : array, shape (N, 2)
-        Of the whole cluster, metres, around the origin.
-    figure : Circle or Outlines (one row)
-        The fit.
-    spread : float
-        Standard deviation of the points from the outline, metres.
-    square : bool
-        Whether four sides were fitted with right angles.
-    """
+    """Return how much more a figure would cost if it could bend; below zero, it had better."""
     n_numbers = 3 if isinstance(figure, Circle) else 5 if square else 2 * figure.angles.shape[1]
     residuals = residuals_along(points, figure, spread)
     beside = np.abs(residuals) > depth_of(spread)

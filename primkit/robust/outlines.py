@@ -43,18 +43,10 @@ PARALLEL = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Outlines:
-    """C convex outlines of K sides each, in normal form.
+    """C outlines of K sides each, in normal form."""
 
-    Parameters
-    ----------
-    angles : array, shape (C, K)
-        Bearings of the outward normals in radians, counter-clockwise from side to side.
-    offsets : array, shape (C, K)
-        Signed distances of the sides' lines from the origin, metres.
-    """
-
-    angles: Floats
-    offsets: Floats
+    angles: Floats  # (C, K), bearings of the outward normals, counter-clockwise from side to side
+    offsets: Floats  # (C, K), signed distances of the sides' lines from the origin
 
     def __len__(self) -> int:
         return len(self.angles)
@@ -182,13 +174,17 @@ class Outlines:
         named = self.convex and (right if k == 4 else k in (3, 5))
         return KINDS[k - 2] if named else "polygon"
 
-    def distance(self, points: Floats) -> Floats:
-        """Return how far each point is from each outline, shape (C, N), metres; from convex ones with its sign."""
+    def signed_distance(self, points: Floats) -> Floats:
+        """Return how far each point is from the first outline, shape (N,), metres; from a convex one with its sign."""
+        r = self.distances(points)[0]
         if self.convex:
-            return self.distances(points).max(axis=2)
-        (begin, end), r, t = self.spans(), self.distances(points), self.along(points)
-        beyond = np.maximum(np.maximum(begin[:, None] - t, t - end[:, None]), 0.0)
-        return np.hypot(r, beyond).min(axis=2)
+            return r.max(axis=1)
+        (begin, end), t = self.spans(), self.along(points)[0]
+        return np.hypot(r, np.maximum(np.maximum(begin[0] - t, t - end[0]), 0.0)).min(axis=1)
+
+    def truncated_cost(self, points: Floats, reach: float) -> Floats:
+        """Return the sum of squared distances from each outline, held at ``reach^2``, shape (C,), square metres."""
+        return (np.minimum(np.abs(self.distances(points).max(axis=2)), reach) ** 2).sum(axis=1)
 
     def places(self, points: Floats) -> tuple[Floats, Floats, Floats]:
         """Return each point's place along the first outline, how far outside it lies, and how far from a second side.

@@ -42,23 +42,9 @@ LONGEST_LEAP = 4.0  # a leap goes at most so many steps ahead, so that it stays 
 
 
 def refine_hard(points: Floats, guess: Outlines, reach: float, *, square: bool = False) -> Outlines:
-    """Give each point to the side it belongs to, refit all sides, and repeat.
+    """Give each point to the side it belongs to, refit all sides, and repeat; some may no longer be ``sound`` then.
 
-    Parameters
-    ----------
-    points : array, shape (N, 2)
-        Metres.
-    guess : Outlines
-        C guesses.
-    reach : float
-        Points farther than this from an outline do not count for it, in metres.
-    square : bool
-        Keep right angles (four sides): one bearing is fitted for all sides together.
-
-    Returns
-    -------
-    Outlines
-        The C guesses after a few rounds; some may no longer be ``sound``.
+    Points farther than ``reach`` metres from one of the C outlines do not count for it.
     """
     before, features = None, features_of(points)
     for _ in range(HARD_ROUNDS):
@@ -82,25 +68,8 @@ def refine_soft(
     """Give each point to all sides in the shares that its position makes likely, refit, repeat until settled.
 
     Around a corner nobody can say which side a noisy point came from. Giving it to the farther side, as
-    ``refine_hard`` does, pushes both sides outwards; shares do not.
-
-    Parameters
-    ----------
-    points : array, shape (N, 2)
-        Metres.
-    guess : Outlines
-        C sound guesses, each near its solution.
-    spread : float
-        Standard deviation of the points' distance from the outline, metres.
-    square : bool
-        Keep right angles (four sides).
-    sound : callable
-        Tells which outlines are such as are looked for.
-
-    Returns
-    -------
-    Outlines
-        The C outlines, settled; or as they were before one of them would have stopped being ``sound``.
+    ``refine_hard`` does, pushes both sides outwards; shares do not. The C guesses are sound, and near their solutions;
+    they settle, or stay as they were before one of them would have stopped being ``sound``.
     """
     settled, features = SETTLED_TURN * (spread / LEAST_SPREAD) ** 0.5, features_of(points)
     for _ in range(SOFT_ROUNDS // 2):
@@ -137,26 +106,12 @@ def _as_rows(outlines: Outlines) -> Floats:
     return np.concatenate([outlines.angles, ROW_METRE * outlines.offsets], axis=1)
 
 
-def truncated_cost(points: Floats, outlines: Outlines, reach: float) -> Floats:
-    """Return the sum of squared distances from each outline, each held at ``reach^2``, shape (C,), square metres."""
-    farthest_out = outlines.distances(points).max(axis=2)
-    return (np.minimum(np.abs(farthest_out), reach) ** 2).sum(axis=1)
-
-
 def shares(points: Floats, outlines: Outlines, spread: float) -> tuple[Floats, Floats, Floats]:
-    """Return to what share each point belongs to each side, and how likely the points are.
+    """Return to what share each point belongs to each side, how much it tells about that, and how likely all are.
 
     The model: a point comes from anywhere along the outline, and is moved by noise of ``spread``, as ``scatter``
-    describes it; a few come from nowhere.
-
-    Returns
-    -------
-    shares : array, shape (C, N, K)
-        The rest to one is the share of a point that comes from nowhere.
-    told : array, shape (C, N, K)
-        How much each point tells about each side, if it belongs to it: see ``scatter``.
-    log_likelihood : array, shape (C,)
-        Natural logarithm of the density of all points together.
+    describes it; a few come from nowhere, by what the shares, shape (C, N, K), lack to one. The last is the natural
+    logarithm of the density of all points together, shape (C,).
     """
     from scipy.special import ndtr  # not at the top: it takes longer to load than all of the kit
 
@@ -173,16 +128,8 @@ def shares(points: Floats, outlines: Outlines, spread: float) -> tuple[Floats, F
 def refit(features: Floats, weights: Floats, outlines: Outlines, *, square: bool = False) -> Outlines:
     """Return the outlines whose sides fit their points best, by weighted total least squares.
 
-    Parameters
-    ----------
-    features : array, shape (6, N)
-        Of the points, as ``features_of`` has them.
-    weights : array, shape (C, N, K)
-        How much each point counts for each side.
-    outlines : Outlines
-        Sides without points stay as they are here; the fitted normals keep to the same side.
-    square : bool
-        Fit one bearing for four sides at right angles.
+    The points come as ``features_of`` has them, shape (6, N); the weights, shape (C, N, K), tell how much each counts
+    for each side. Sides without points stay as they are; the fitted normals keep to the same side.
     """
     sums = (features @ weights).transpose(1, 0, 2)  # (6, C, K)
     enough = sums[0] >= LEAST_OF_SIDE
@@ -199,21 +146,9 @@ def refit(features: Floats, weights: Floats, outlines: Outlines, *, square: bool
 
 
 def one_side_more(points: Floats, outline: Outlines) -> Outlines:
-    """Return guesses with one side more than a fitted outline has: each side broken in two, each corner cut off.
+    """Return 2 K guesses with one side more than the first outline has: each side broken in two, each corner cut off.
 
     Two sides that hardly bend, or a short one, are taken for one until all the others are in their places.
-
-    Parameters
-    ----------
-    points : array, shape (N, 2)
-        Metres.
-    outline : Outlines
-        One row of K sides.
-
-    Returns
-    -------
-    Outlines
-        2 K guesses of K + 1 sides.
     """
     k = outline.angles.shape[1]
     owner = outline.distances(points)[0].argmax(axis=1)

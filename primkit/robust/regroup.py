@@ -60,15 +60,7 @@ class _Tried:
 
 @dataclass
 class Opinion:
-    """Explains points, and knows how much work that was: beyond a bound, no more is tried.
-
-    Parameters
-    ----------
-    explain : callable
-        Explains (N, 2) points as a group.
-    work : int
-        The points that were explained, and some more for each try.
-    """
+    """Explains points, and knows how much work that was, points and some more for each try: it is bounded."""
 
     explain: Explain
     work: int = 0
@@ -98,25 +90,14 @@ def regrouped(
     explain: Opinion | None = None,
     lone: Floats | None = None,
 ) -> tuple[list[Choice], list[float]]:
-    """Split and merge groups as long as that explains the points better, within a bound of work.
+    """Split and merge the groups that segmentation left, as long as that explains the points better, within a bound.
 
-    Parameters
-    ----------
-    groups : sequence of Choice
-        As segmentation left them.
-    spread : float
-        Standard deviation of the points from the outlines, metres.
-    n_shapes : int, optional
-        The number of groups to end with, when it is known.
-    explain : Opinion, optional
-        Explains (N, 2) points as a group; by ``explained`` if it is not given.
-    lone : array, shape (N, 2), optional
-        Points that were linked to none, metres.
+    Points that were linked to none are ``lone``, shape (N, 2), metres.
 
     Returns
     -------
     groups : list of Choice
-        As many as asked for, as far as the points allow; else as many as explain the points best.
+        ``n_shapes`` where that is known, as far as the points allow; else as many as explain the points best.
     margins : list of float
         For each group, how much better it explains the points than the best grouping in which it is split or
         merged with a neighbour: twice the logarithm of the Bayes factor; infinite when none was in question.

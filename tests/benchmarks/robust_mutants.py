@@ -129,8 +129,8 @@ MUTANTS = (
     Mutant(
         "the back of a wall was not seen",
         "robust/evidence.py",
-        "cost + UNSEEN_COST * length, length, on_it",
-        "cost, length, on_it",
+        "cost + UNSEEN_COST * length, length, n_on",
+        "cost, length, n_on",
         EVIDENCE + CHOICE,
     ),
     # --- scatter ---
@@ -161,7 +161,7 @@ MUTANTS = (
     Mutant("nearly all points lie on it", "robust/choice.py", "and self.on_it.mean() >= NEARLY_ALL", "", CHOICE),
     Mutant("nearly all of it was seen", "robust/choice.py", "min(best.seen) >= MOST_SEEN", "True", CHOICE),
     Mutant("an arc, where all can be", "robust/choice.py", 'and "polygon" not in self.kinds', "", CHOICE),
-    Mutant("a side has its own points", "robust/deviations.py", ".sum(axis=0) < LEAST_OWN", ".sum(axis=0) < 0", CHOICE),
+    Mutant("a side has its own points", "robust/deviations.py", "=0) < LEAST_OF_SIDE", "=0) < 0", CHOICE),
     Mutant("so large that its kind can show", "robust/choice.py", "and large >= LEAST_SIDE", "", CHOICE),
     # --- lack of fit ---
     Mutant(
@@ -211,7 +211,7 @@ MUTANTS = (
     Mutant(
         "strays are left out of the first fit",
         "robust/candidates.py",
-        "kept = kept[on_it if near.all() else near]",
+        "points = points[on_it if near.all() else near]",
         "return",
         CUTS,
     ),
