@@ -12,9 +12,10 @@ import primkit as pk
 from primkit.parts import Apart, Composite
 from primkit.parts.families import Part
 from primkit.parts.fitting import Sample, deepened, fitted, outside_union
-from primkit.parts.openness import may_hide_corner, open_sizes
+from primkit.parts.openness import may_hide_corner, open_sizes, shows_two_sides
 from primkit.parts.pieces import pieces_of, room_in
 from primkit.parts.proposals import Stretch, laid, runs
+from primkit.parts.search import explained, improved
 
 BOX = pk.Polygon([(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (-0.1, 0.05)])
 PENTAGON = pk.Polygon(0.07 * np.column_stack([np.cos(t := np.arange(5) * 0.4 * np.pi), np.sin(t)]))
@@ -125,6 +126,22 @@ def test_a_hidden_stretch_may_hide_a_corner() -> None:
     assert not may_hide_corner(parts[:1], 0)
 
 
+def test_a_triangle_could_have_two_neighbouring_sides_and_no_more() -> None:
+    tall, wide = np.array([0.0, 0.0, 0.0, 0.1, 0.3]), np.array([0.1, 0.1, 0.0, 0.2, 0.11])
+    parts = [Part("rectangle", x) for x in (tall, wide)]  # the wide one shows its right end and two long sides
+    corner = Part("rectangle", np.array([0.0, 0.12, np.pi / 4, 0.1, 0.1]))  # nothing but a corner
+    assert not shows_two_sides(parts, 1)
+    assert shows_two_sides([Part("circle", np.array([0.0, 0.0, 0.15])), corner], 1)
+
+
+def test_a_triangle_with_two_sides_alike_has_nearly_the_same_numbers_on_another_base() -> None:
+    even = Part("triangle", np.array([0.01, 0.02, 0.3, 0.2, 0.2 * np.sqrt(3) / 2]))
+    assert len(even.on_other_bases) == 2
+    for x in even.on_other_bases:
+        off = np.hypot(*(even.with_numbers(x).corners[:, None] - even.corners).transpose(2, 0, 1)).min(axis=1)
+        assert off.max() < 1e-9
+
+
 @pytest.mark.parametrize("style", ["paper", "free"])
 @pytest.mark.parametrize(
     ("kind", "x"),
@@ -150,8 +167,7 @@ def test_derivatives_are_those_of_the_distance(kind: pk.shapes.Kind, x: list[flo
 
 def test_parts_are_fitted_together() -> None:
     truth = [Part("rectangle", np.array([0.0, 0.0, 0.1, 0.2, 0.1])), Part("circle", np.array([0.0, 0.05, 0.06]))]
-    ring = np.concatenate([part.shape.outline(200) for part in truth])
-    ring = ring[np.abs(outside_union(truth, ring)) < 1e-9]
+    ring = on_union(truth)
     rough = [Part(part.kind, part.x + 0.004) for part in truth]
     found = fitted(rough, Sample(ring, 0.0004))
     assert all(np.allclose(a.x, b.x, atol=1e-4) for a, b in zip(found, truth, strict=True))
@@ -174,14 +190,31 @@ def test_each_part_is_laid_around_a_stretch_of_the_outline() -> None:
 def test_hidden_sides_are_laid_deep_and_seen_ones_stay() -> None:
     box = Part("rectangle", np.array([0.0, 0.0, 0.0, 0.2, 0.2]))
     short = Part("rectangle", np.array([0.13, 0.0, 0.0, 0.07, 0.1]))  # its left end lies 5 mm inside of the box
-    ring = np.concatenate([part.shape.outline(200) for part in (box, short)])
-    ring = ring[np.abs(outside_union([box, short], ring)) < 1e-9]
+    ring = on_union([box, short])
     sample = Sample(ring, 0.0004, beside=box.outside(ring))
     x = deepened(short.with_numbers(short.x[None]), sample).x[0]
     right, left = x[0] + x[3] / 2, x[0] - x[3] / 2
     assert right == pytest.approx(0.165, abs=0.001)
     assert left < 0.06
     assert x[4] == pytest.approx(0.1, abs=0.001)
+
+
+def on_union(parts: list[Part]) -> np.ndarray:
+    """Return places of the outline of the union of two parts."""
+    ring = np.concatenate([part.shape.outline(200) for part in parts])
+    return ring[np.abs(outside_union(parts, ring)) < 1e-9]
+
+
+def test_a_fit_leaves_a_local_optimum() -> None:
+    """A box flush with a roof was fitted 17 mm too long: its corners stuck out beside the roof."""
+    box, roof = np.array([0.0, 0.0, 0.0, 0.2, 0.1]), np.array([0.1, 0.0, -np.pi / 2, 0.12, 0.08])
+    truth = [Part("rectangle", box), Part("triangle", roof)]
+    sample = Sample(on_union(truth), 0.0006)
+    stuck = explained([Part("rectangle", box + np.array([0.01, 0, 0, 0.02, 0])), truth[1]], sample)
+    assert stuck.cost > explained(truth, sample).cost + 20
+    found = improved(stuck, sample)
+    assert found.cost == pytest.approx(explained(truth, sample).cost, abs=2)
+    assert found.parts[0].x[3] == pytest.approx(0.2, abs=0.001)
 
 
 # --- the camera ------------------------------------------------------------------------------------------------------

@@ -39,14 +39,13 @@ from .openness import (
     may_hide_corner,
     open_sizes,
     shown_places,
-    shows_one_corner,
+    shows_two_sides,
     size_slopes,
 )
 from .pieces import pieces_of, room_in
 from .search import PART_PRICE, Explanation, explanations, unseen
 
 LEAST_OUTLINE_POINTS = 30  # an outline of several shapes has a hundred
-NEAR_CELLS, NEAR_SPREADS = 1.5, 2.0  # how far a piece of outline may be off: its own error, and what points scatter
 AROUND_CORNERS = 0.005  # m: pieces end short of sharp corners
 CLEAR_MARGIN = 20.0  # of the margin: rivals are only those that were found, so that 10, very strong, is not enough
 LEAST_ON_IT, MOST_UNSEEN = 0.97, 0.01  # of the points, and m of the outline: else the parts do not explain them
@@ -153,17 +152,20 @@ def _told(ranked: Sequence[Explanation], sample: Sample, frame: Frame) -> Apart:
     """Return the best explanation in metres, with what is open about it."""
     best = ranked[0]
     deep = all_deepened(best.parts, sample)
-    least, parts = [drawn_in(deep, i, INSIDE) for i in range(len(deep))], deep.copy()
+    least = [drawn_in(deep, i, INSIDE) for i in range(len(deep))]
     middle = [part.with_numbers((part.x + far.x) / 2) for part, far in zip(least, deep, strict=True)]
-    is_open = [np.abs(size_slopes(part) @ (far.x - part.x)) > SIZE_STEP for part, far in zip(least, deep, strict=True)]
+    hidden = [np.abs(size_slopes(part) @ (far.x - part.x)) for part, far in zip(least, deep, strict=True)]
+    is_open = [
+        (some > SIZE_STEP) | open_sizes([*deep[:i], middle[i], *deep[i + 1 :]], i) for i, some in enumerate(hidden)
+    ]
+    parts = deep.copy()
     for i in range(len(parts)):
-        is_open[i] |= open_sizes([*deep[:i], middle[i], *deep[i + 1 :]], i)
         parts[i] = drawn_in(parts, i)
     others: list[set[Kind]] = [set() for _ in parts]
     for i, part in enumerate(middle):
         if part.style == "free" and may_hide_corner(middle, i):
             others[i].add("pentagon")
-        if shows_one_corner(middle, i):
+        if shows_two_sides(middle, i):
             others[i].add("triangle")
         for rival in ranked:
             if rival.cost < best.cost + CLEAR_MARGIN and len(rival.parts) == len(parts):

@@ -10,8 +10,8 @@ A union hides what lies inside. Two questions, for each part of an explanation:
    J: how the shown places move with the numbers, D: how the size does. The change is then made, and the outlines are
    compared. What points alone leave open is found by pushing each size, and looking whether it comes back.
 2. *Kinds.* A stretch of a part's hull that lies inside the union, LEAST_FREE_SIDE long or longer, may hide a corner:
-   in the style "free" a part with fewer than five corners may then be a pentagon. A part that shows one corner alone
-   could be a triangle. Which other kinds explain the points as well is a matter of evidence (``apart.py``).
+   in the style "free" a part with fewer than five corners may then be a pentagon. A part that shows two neighbouring
+   sides alone could be a triangle. Which other kinds explain the points as well is a matter of evidence (``apart.py``).
 
 In:  the ``Part``s of an explanation.
 Out: for each part, which of its sizes are open; and how much of its hull hides a stretch.
@@ -38,7 +38,7 @@ from .search import outline_of
 SIZE_STEP, SAME = 0.006, 0.001  # m: sizes that differ by more are different, outlines that differ by less are the same
 MOST_CHANGE = 0.05  # m and rad: numbers change by no more
 SMALL = 1e-3  # what a change of the numbers costs beside one of the outline: the smallest change is taken
-SAME_AS_SEEN = 0.0015  # m: with what the steps between places leave
+SAME_AS_SEEN = 0.0013  # m: with what the linear programme leaves out
 STEPS_AGAIN = 5  # of fitting
 STICKS_OUT = 0.005  # m
 INSIDE = 0.003  # m from the outline: that deep, a stretch of hull is hidden
@@ -72,7 +72,7 @@ def open_sizes(parts: Sequence[Part], i: int) -> Bools:
     return is_open
 
 
-def shown_places(part: Part, others: Sequence[Part], step: float = 0.002, beyond: float = INSIDE) -> Floats:
+def shown_places(part: Part, others: Sequence[Part], step: float = 0.002, beyond: float = SAME / 2) -> Floats:
     """Return places of a part's outline that lie so far beyond the others, off its corners, shape (M, 2), metres.
 
     A stretch that nowhere lies STICKS_OUT outside is none that shows: noise lets hidden corners stick out.
@@ -150,9 +150,11 @@ def may_hide_corner(parts: Sequence[Part], i: int) -> bool:
     return 0.001 * int(hidden.sum()) > LEAST_FREE_SIDE
 
 
-def shows_one_corner(parts: Sequence[Part], i: int) -> bool:
-    """Tell whether at most one corner of part i lies outside the other parts: a triangle could have that one, too."""
-    others = [*parts[:i], *parts[i + 1 :]]
-    if parts[i].kind not in ("rectangle", "pentagon") or not others:
+def shows_two_sides(parts: Sequence[Part], i: int) -> bool:
+    """Tell whether part i shows two neighbouring sides at most: a triangle could have those, too."""
+    if parts[i].kind not in ("rectangle", "pentagon"):
         return False
-    return int((outside_union(others, parts[i].corners) > INSIDE).sum()) <= 1
+    normals, offsets = parts[i].lines
+    shown = shown_places(parts[i], [*parts[:i], *parts[i + 1 :]])
+    sides = np.unique((normals @ shown.T - offsets[:, None]).argmax(axis=0))
+    return len(sides) <= 1 or (len(sides) == 2 and np.ptp(sides) in (1, len(offsets) - 1))
