@@ -9,13 +9,15 @@ import pytest
 import shapely
 
 import primkit as pk
+from primkit.measure import Frame
 from primkit.parts import Apart, Composite
+from primkit.parts.apart import with_what_is_open
 from primkit.parts.families import Part
 from primkit.parts.fitting import Sample, deepened, fitted, outside_union
 from primkit.parts.openness import may_hide_corner, open_sizes, shows_two_sides
 from primkit.parts.pieces import pieces_of, room_in
 from primkit.parts.proposals import Stretch, laid, runs
-from primkit.parts.search import explained, improved
+from primkit.parts.search import Explanation, explained, improved
 
 BOX = pk.Polygon([(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (-0.1, 0.05)])
 PENTAGON = pk.Polygon(0.07 * np.column_stack([np.cos(t := np.arange(5) * 0.4 * np.pi), np.sin(t)]))
@@ -67,15 +69,6 @@ def test_a_world_sees_the_union_and_nothing_inside() -> None:
     assert min(part.signed_distance(points).min() for part in composite.parts) > -0.0015
 
 
-def test_moved_composites_are_rigid() -> None:
-    composite = COMPOSITES["box in a pentagon"][0]
-    moved = composite.moved((0.1, -0.2), 0.7)
-    assert moved.union.area == pytest.approx(composite.union.area)
-    assert np.allclose(moved.union.centroid, composite.union.centroid + np.array((0.1, -0.2)))
-    between = [np.hypot(*(c.parts[0].centroid - c.parts[1].centroid)) for c in (composite, moved)]
-    assert between[0] == pytest.approx(between[1])
-
-
 @pytest.mark.parametrize(
     ("parts", "message"),
     [
@@ -111,6 +104,14 @@ def test_a_hidden_side_is_open_and_a_seen_one_is_not() -> None:
     assert open_sizes([tall, flush], 1).tolist() == [True, False]
     assert open_sizes([tall, flush], 0).tolist() == [False, False]
     assert open_sizes([tall], 0).tolist() == [False, False]
+
+
+def test_a_size_is_open_that_explains_the_points_as_well() -> None:
+    box, longer = ([Part("rectangle", np.array([0.0, 0.0, 0.0, length, 0.1]))] for length in (0.2, 0.21))
+    ring = BOX.outline(100)
+    for more, is_open in ((3.0, True), (30.0, False)):
+        ranked = [Explanation(box, 100.0), Explanation(longer, 100.0 + more)]
+        assert with_what_is_open(ranked, Sample(ring, 0.0004), Frame.of(ring, 0.001)).open_sizes == ((is_open, False),)
 
 
 def test_a_short_arc_leaves_its_radius_open() -> None:

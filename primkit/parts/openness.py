@@ -102,6 +102,19 @@ def size_slopes(part: Part) -> Floats:
     return slopes[:2] if part.kind == "rectangle" else slopes
 
 
+def sizes_differ(part: Part, other: Part) -> Bools:
+    """Return which sizes of a part, by their rank, are not those of another of its kind, shape (S,)."""
+
+    def sizes(of: Part) -> Floats:
+        sides = np.hypot(*(np.roll(of.corners, -1, axis=0) - of.corners).T)
+        return np.abs(of.x[2:]) if of.kind == "circle" else sides[:2] if of.kind == "rectangle" else sides
+
+    mine, theirs = sizes(part), sizes(other)
+    differ = np.zeros(len(mine), dtype=bool)
+    differ[np.argsort(mine)] = np.abs(np.sort(mine) - np.sort(theirs)) > SIZE_STEP
+    return differ
+
+
 def _apart(parts: Sequence[Part], changed: Sequence[Part]) -> float:
     """Return the greatest distance of the outline of either union, slits closed, from the other's, metres."""
     import shapely
