@@ -47,7 +47,7 @@ from .search import PART_PRICE, Explanation, explanations, unseen
 LEAST_OUTLINE_POINTS = 30  # an outline of several shapes has a hundred
 AROUND_CORNERS = 0.005  # m: pieces end short of sharp corners
 CLEAR_MARGIN = 20.0  # of the margin: rivals are only those that were found, so that 10, very strong, is not enough
-AS_GOOD = 6.0  # of the margin: parts of the same kinds that explain the points as well, so that a size may be theirs
+AS_GOOD = 4.0  # of the margin: chance gives one number that much in 1 of 20: a size may be that of such a rival
 LEAST_ON_IT, MOST_UNSEEN = 0.97, 0.01  # of the points, and m of the outline: else the parts do not explain them
 STYLES_OF_PARTS = ("paper", "free")
 

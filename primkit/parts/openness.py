@@ -8,7 +8,7 @@ A union hides what lies inside. Two questions, for each part of an explanation:
        least t  with  -t <= J dx <= t,  D dx = +-SIZE_STEP
 
    J: how the shown places move with the numbers, D: how the size does. The change is then made, and the outlines are
-   compared. What points alone leave open is found by pushing each size, and looking whether it comes back.
+   compared. What points alone leave open is told by rivals of the same kinds (``apart.py``).
 2. *Kinds.* A stretch of a part's hull that lies inside the union, LEAST_FREE_SIDE long or longer, may hide a corner:
    in the style "free" a part with fewer than five corners may then be a pentagon. A part that shows two neighbouring
    sides alone could be a triangle. Which other kinds explain the points as well is a matter of evidence (``apart.py``).
@@ -38,7 +38,7 @@ from .search import outline_of
 SIZE_STEP, SAME = 0.006, 0.001  # m: sizes that differ by more are different, outlines that differ by less are the same
 MOST_CHANGE = 0.05  # m and rad: numbers change by no more
 SMALL = 1e-3  # what a change of the numbers costs beside one of the outline: the smallest change is taken
-SAME_AS_SEEN = 0.0013  # m: with what the linear programme leaves out
+SAME_AS_SEEN = 0.0012  # m: with what the linear programme leaves out
 STEPS_AGAIN = 5  # of fitting
 STICKS_OUT = 0.005  # m
 INSIDE = 0.003  # m from the outline: that deep, a stretch of hull is hidden
