@@ -14,7 +14,7 @@ from primkit.parts import Apart, Composite
 from primkit.parts.apart import with_what_is_open
 from primkit.parts.families import Part
 from primkit.parts.fitting import Sample, deepened, fitted, outside_union
-from primkit.parts.openness import may_hide_corner, open_sizes, shows_two_sides
+from primkit.parts.openness import kinds_as_shown, open_sizes
 from primkit.parts.pieces import pieces_of, room_in
 from primkit.parts.proposals import Stretch, laid, runs
 from primkit.parts.search import Explanation, explained, improved
@@ -123,16 +123,16 @@ def test_a_short_arc_leaves_its_radius_open() -> None:
 def test_a_hidden_stretch_may_hide_a_corner() -> None:
     box, stub = np.array([0.0, 0.0, 0.0, 0.2, 0.2]), np.array([0.1, 0.0, 0.0, 0.1, 0.08])
     parts = [Part("rectangle", x, "free") for x in (box, stub)]
-    assert [may_hide_corner(parts, i) for i in (0, 1)] == [True, True]
-    assert not may_hide_corner(parts[:1], 0)
+    assert ["pentagon" in kinds_as_shown(parts, i) for i in (0, 1)] == [True, True]
+    assert not kinds_as_shown(parts[:1], 0)
 
 
 def test_a_triangle_could_have_two_neighbouring_sides_and_no_more() -> None:
     tall, wide = np.array([0.0, 0.0, 0.0, 0.1, 0.3]), np.array([0.1, 0.1, 0.0, 0.2, 0.11])
     parts = [Part("rectangle", x) for x in (tall, wide)]  # the wide one shows its right end and two long sides
     corner = Part("rectangle", np.array([0.0, 0.12, np.pi / 4, 0.1, 0.1]))  # nothing but a corner
-    assert not shows_two_sides(parts, 1)
-    assert shows_two_sides([Part("circle", np.array([0.0, 0.0, 0.15])), corner], 1)
+    assert not kinds_as_shown(parts, 1)
+    assert kinds_as_shown([Part("circle", np.array([0.0, 0.0, 0.15])), corner], 1) == {"triangle"}
 
 
 def test_a_triangle_with_two_sides_alike_has_nearly_the_same_numbers_on_another_base() -> None:

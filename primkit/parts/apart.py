@@ -31,16 +31,7 @@ from ..shapes import Circle, Kind, Polygon, Shape
 from ..table import count
 from .families import Part, Style
 from .fitting import Sample, outside_union
-from .openness import (
-    INSIDE,
-    all_deepened,
-    drawn_in,
-    may_hide_corner,
-    open_sizes,
-    shown_places,
-    shows_two_sides,
-    sizes_differ,
-)
+from .openness import INSIDE, all_deepened, drawn_in, kinds_as_shown, open_sizes, shown_places, sizes_differ
 from .pieces import pieces_of, room_in
 from .search import PART_PRICE, Explanation, explanations, unseen
 
@@ -161,12 +152,8 @@ def with_what_is_open(ranked: Sequence[Explanation], sample: Sample, frame: Fram
     parts = deep.copy()
     for i in range(len(parts)):
         parts[i] = drawn_in(parts, i)
-    others: list[set[Kind]] = [set() for _ in parts]
+    others = [kinds_as_shown(middle, i) for i in range(len(middle))]
     for i, part in enumerate(middle):
-        if part.style == "free" and may_hide_corner(middle, i):
-            others[i].add("pentagon")
-        if shows_two_sides(middle, i):
-            others[i].add("triangle")
         for rival in ranked:
             if rival.cost < best.cost + CLEAR_MARGIN and len(rival.parts) == len(parts):
                 far = [np.hypot(*(other.shape.centroid - part.shape.centroid)) for other in rival.parts]

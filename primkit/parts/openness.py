@@ -31,6 +31,7 @@ import numpy as np
 
 from ..arguments import Bools, Floats
 from ..random_shapes import LEAST_FREE_SIDE
+from ..shapes import Kind
 from .families import Part
 from .fitting import OUTWARDS, Sample, deepened, fitted, outside_union
 from .search import outline_of
@@ -149,25 +150,21 @@ def drawn_in(parts: Sequence[Part], i: int, beyond: float = SAME / 2) -> Part:
     return found
 
 
-def may_hide_corner(parts: Sequence[Part], i: int) -> bool:
-    """Tell whether a stretch of the hull of what part i shows lies inside the union, and has room for a corner."""
+def kinds_as_shown(parts: Sequence[Part], i: int) -> set[Kind]:
+    """Return the other kinds that could show what part i shows: triangles, and pentagons with a corner inside."""
     import shapely
     from scipy.spatial import cKDTree
 
-    others = [*parts[:i], *parts[i + 1 :]]
-    shown = shown_places(parts[i], others)
-    if parts[i].kind in ("circle", "pentagon") or len(shown) < 3 or not others:
-        return False
-    ring = shapely.get_coordinates(shapely.MultiPoint(shown).convex_hull.exterior.segmentize(0.001))
-    hidden = cKDTree(outline_of(parts, 0.001, SAME)).query(ring)[0] > INSIDE
-    return 0.001 * int(hidden.sum()) > LEAST_FREE_SIDE
-
-
-def shows_two_sides(parts: Sequence[Part], i: int) -> bool:
-    """Tell whether part i shows two neighbouring sides at most: a triangle could have those, too."""
-    if parts[i].kind not in ("rectangle", "pentagon"):
-        return False
-    normals, offsets = parts[i].lines
-    shown = shown_places(parts[i], [*parts[:i], *parts[i + 1 :]])
-    sides = np.unique((normals @ shown.T - offsets[:, None]).argmax(axis=0))
-    return len(sides) <= 1 or (len(sides) == 2 and np.ptp(sides) in (1, len(offsets) - 1))
+    part, others, found = parts[i], [*parts[:i], *parts[i + 1 :]], set[Kind]()
+    shown = shown_places(part, others)
+    if part.kind in ("rectangle", "pentagon"):
+        normals, offsets = part.lines
+        sides = np.unique((normals @ shown.T - offsets[:, None]).argmax(axis=0))
+        if len(sides) <= 1 or (len(sides) == 2 and np.ptp(sides) in (1, len(offsets) - 1)):
+            found.add("triangle")
+    if part.style == "free" and part.kind in ("rectangle", "triangle") and others and len(shown) >= 3:
+        ring = shapely.get_coordinates(shapely.MultiPoint(shown).convex_hull.exterior.segmentize(0.001))
+        hidden = cKDTree(outline_of(parts, 0.001, SAME)).query(ring)[0] > INSIDE
+        if 0.001 * int(hidden.sum()) > LEAST_FREE_SIDE:
+            found.add("pentagon")
+    return found
