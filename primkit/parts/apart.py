@@ -31,24 +31,14 @@ from ..shapes import Circle, Kind, Polygon, Shape
 from ..table import count
 from .families import Part, Style
 from .fitting import Sample, outside_union
-from .openness import (
-    INSIDE,
-    SIZE_STEP,
-    all_deepened,
-    drawn_in,
-    may_hide_corner,
-    open_sizes,
-    shown_places,
-    shows_one_corner,
-    size_slopes,
-)
+from .openness import INSIDE, all_deepened, drawn_in, kinds_as_shown, open_sizes, shown_places, sizes_differ
 from .pieces import pieces_of, room_in
 from .search import PART_PRICE, Explanation, explanations, unseen
 
 LEAST_OUTLINE_POINTS = 30  # an outline of several shapes has a hundred
-NEAR_CELLS, NEAR_SPREADS = 1.5, 2.0  # how far a piece of outline may be off: its own error, and what points scatter
 AROUND_CORNERS = 0.005  # m: pieces end short of sharp corners
 CLEAR_MARGIN = 20.0  # of the margin: rivals are only those that were found, so that 10, very strong, is not enough
+AS_GOOD = 4.0  # of the margin: chance gives one number that much in 1 of 20: a size may be that of such a rival
 LEAST_ON_IT, MOST_UNSEEN = 0.97, 0.01  # of the points, and m of the outline: else the parts do not explain them
 STYLES_OF_PARTS = ("paper", "free")
 
@@ -146,29 +136,31 @@ def take_apart(
         return None
     sample = Sample(local, spread, labels, room=room_in(pieces, SIGMAS * spread + AROUND_CORNERS))
     ranked = explanations(pieces, sample, style)
-    return _told(ranked, sample, replace(frame, origin=frame.metres(middle[None])[0])) if ranked else None
+    return with_what_is_open(ranked, sample, replace(frame, origin=frame.metres(middle[None])[0])) if ranked else None
 
 
-def _told(ranked: Sequence[Explanation], sample: Sample, frame: Frame) -> Apart:
+def with_what_is_open(ranked: Sequence[Explanation], sample: Sample, frame: Frame) -> Apart:
     """Return the best explanation in metres, with what is open about it."""
     best = ranked[0]
     deep = all_deepened(best.parts, sample)
-    least, parts = [drawn_in(deep, i, INSIDE) for i in range(len(deep))], deep.copy()
+    least = [drawn_in(deep, i, INSIDE) for i in range(len(deep))]
     middle = [part.with_numbers((part.x + far.x) / 2) for part, far in zip(least, deep, strict=True)]
-    is_open = [np.abs(size_slopes(part) @ (far.x - part.x)) > SIZE_STEP for part, far in zip(least, deep, strict=True)]
+    is_open = [
+        sizes_differ(least[i], deep[i]) | open_sizes([*deep[:i], middle[i], *deep[i + 1 :]], i)
+        for i in range(len(deep))
+    ]
+    parts = deep.copy()
     for i in range(len(parts)):
-        is_open[i] |= open_sizes([*deep[:i], middle[i], *deep[i + 1 :]], i)
         parts[i] = drawn_in(parts, i)
-    others: list[set[Kind]] = [set() for _ in parts]
+    others = [kinds_as_shown(middle, i) for i in range(len(middle))]
     for i, part in enumerate(middle):
-        if part.style == "free" and may_hide_corner(middle, i):
-            others[i].add("pentagon")
-        if shows_one_corner(middle, i):
-            others[i].add("triangle")
         for rival in ranked:
             if rival.cost < best.cost + CLEAR_MARGIN and len(rival.parts) == len(parts):
                 far = [np.hypot(*(other.shape.centroid - part.shape.centroid)) for other in rival.parts]
-                others[i] |= {rival.parts[int(np.argmin(far))].kind} - {part.kind}
+                near = rival.parts[int(np.argmin(far))]
+                others[i] |= {near.kind} - {part.kind}
+                if rival.kinds == best.kinds and near.kind == part.kind and rival.cost < best.cost + AS_GOOD:
+                    is_open[i] |= sizes_differ(best.parts[i], near)
     on_it = np.abs(outside_union(deep, sample.points)) <= SIGMAS * sample.spread + CELL
     # That fewest parts win is a wish, and no evidence: fewer parts of a rival do not speak for it.
     rivals = [e.cost + PART_PRICE * min(0, len(e.parts) - len(parts)) for e in ranked if e.kinds != best.kinds]

@@ -18,9 +18,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from ..arguments import Floats, as_point, short
+from ..arguments import Floats, short
 from ..shapes import Circle, Polygon, Shape
 
 ARC_CORNERS = 64  # of a quarter of a circle: its outline is off by 1/13,000 of the radius
@@ -70,13 +69,6 @@ class Composite:
     def kinds(self) -> tuple[str, ...]:
         """The kinds of the parts, in the order of the alphabet."""
         return tuple(sorted(part.kind for part in self.parts))
-
-    def moved(self, offset: ArrayLike = (0.0, 0.0), angle: float = 0.0) -> Composite:
-        """Return the composite turned by ``angle`` radians about the union's centroid, then shifted by ``offset``."""
-        middle, offset = self.union.centroid, as_point(offset, "offset")
-        c, s = np.cos(angle), np.sin(angle)
-        turned = [middle + offset + np.array([[c, -s], [s, c]]) @ (part.centroid - middle) for part in self.parts]
-        return Composite(part.moved(to - part.centroid, angle) for part, to in zip(self.parts, turned, strict=True))
 
     def __repr__(self) -> str:
         *first, last = self.kinds

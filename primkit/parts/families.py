@@ -131,6 +131,17 @@ class Part:
         return np.swapaxes(inverse[..., :k] + inverse[..., k:], -1, -2)
 
     @property
+    def on_other_bases(self) -> Floats:
+        """Numbers of nearly the same triangle on its other two bases, shape (2, n); none of other shapes."""
+        if self.kind != "triangle" or self.style != "paper":
+            return np.empty((0, self.x.shape[-1]))
+        begin, end, top = (np.array([np.roll(self.corners, -k, axis=0)[i] for k in (1, 2)]) for i in range(3))
+        middle, base = (begin + end) / 2, end - begin
+        return np.column_stack(
+            [middle, np.arctan2(base[:, 1], base[:, 0]), np.hypot(*base.T), np.hypot(*(top - middle).T)]
+        )
+
+    @property
     def sound(self) -> Bools:
         """Whether it is a shape at all: convex, none of its sides and corners too small to be told."""
         if self.kind == "circle":

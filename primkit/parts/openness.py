@@ -8,10 +8,10 @@ A union hides what lies inside. Two questions, for each part of an explanation:
        least t  with  -t <= J dx <= t,  D dx = +-SIZE_STEP
 
    J: how the shown places move with the numbers, D: how the size does. The change is then made, and the outlines are
-   compared. What points alone leave open is found by pushing each size, and looking whether it comes back.
+   compared. What points alone leave open is told by rivals of the same kinds (``apart.py``).
 2. *Kinds.* A stretch of a part's hull that lies inside the union, LEAST_FREE_SIDE long or longer, may hide a corner:
-   in the style "free" a part with fewer than five corners may then be a pentagon. A part that shows one corner alone
-   could be a triangle. Which other kinds explain the points as well is a matter of evidence (``apart.py``).
+   in the style "free" a part with fewer than five corners may then be a pentagon. A part that shows two neighbouring
+   sides alone could be a triangle. Which other kinds explain the points as well is a matter of evidence (``apart.py``).
 
 In:  the ``Part``s of an explanation.
 Out: for each part, which of its sizes are open; and how much of its hull hides a stretch.
@@ -31,6 +31,7 @@ import numpy as np
 
 from ..arguments import Bools, Floats
 from ..random_shapes import LEAST_FREE_SIDE
+from ..shapes import Kind
 from .families import Part
 from .fitting import OUTWARDS, Sample, deepened, fitted, outside_union
 from .search import outline_of
@@ -38,7 +39,7 @@ from .search import outline_of
 SIZE_STEP, SAME = 0.006, 0.001  # m: sizes that differ by more are different, outlines that differ by less are the same
 MOST_CHANGE = 0.05  # m and rad: numbers change by no more
 SMALL = 1e-3  # what a change of the numbers costs beside one of the outline: the smallest change is taken
-SAME_AS_SEEN = 0.0015  # m: with what the steps between places leave
+SAME_AS_SEEN = 0.0012  # m: with what the linear programme leaves out
 STEPS_AGAIN = 5  # of fitting
 STICKS_OUT = 0.005  # m
 INSIDE = 0.003  # m from the outline: that deep, a stretch of hull is hidden
@@ -72,7 +73,7 @@ def open_sizes(parts: Sequence[Part], i: int) -> Bools:
     return is_open
 
 
-def shown_places(part: Part, others: Sequence[Part], step: float = 0.002, beyond: float = INSIDE) -> Floats:
+def shown_places(part: Part, others: Sequence[Part], step: float = 0.002, beyond: float = SAME / 2) -> Floats:
     """Return places of a part's outline that lie so far beyond the others, off its corners, shape (M, 2), metres.
 
     A stretch that nowhere lies STICKS_OUT outside is none that shows: noise lets hidden corners stick out.
@@ -100,6 +101,19 @@ def size_slopes(part: Part) -> Floats:
     along /= np.hypot(*along.T)[:, None]
     slopes = np.einsum("kc,kcn->kn", along, np.roll(part.slopes, -1, axis=0) - part.slopes)
     return slopes[:2] if part.kind == "rectangle" else slopes
+
+
+def sizes_differ(part: Part, other: Part) -> Bools:
+    """Return which sizes of a part, by their rank, are not those of another of its kind, shape (S,)."""
+
+    def sizes(of: Part) -> Floats:
+        sides = np.hypot(*(np.roll(of.corners, -1, axis=0) - of.corners).T)
+        return np.abs(of.x[2:]) if of.kind == "circle" else sides[:2] if of.kind == "rectangle" else sides
+
+    mine, theirs = sizes(part), sizes(other)
+    differ = np.zeros(len(mine), dtype=bool)
+    differ[np.argsort(mine)] = np.abs(np.sort(mine) - np.sort(theirs)) > SIZE_STEP
+    return differ
 
 
 def _apart(parts: Sequence[Part], changed: Sequence[Part]) -> float:
@@ -136,23 +150,21 @@ def drawn_in(parts: Sequence[Part], i: int, beyond: float = SAME / 2) -> Part:
     return found
 
 
-def may_hide_corner(parts: Sequence[Part], i: int) -> bool:
-    """Tell whether a stretch of the hull of what part i shows lies inside the union, and has room for a corner."""
+def kinds_as_shown(parts: Sequence[Part], i: int) -> set[Kind]:
+    """Return the other kinds that could show what part i shows: triangles, and pentagons with a corner inside."""
     import shapely
     from scipy.spatial import cKDTree
 
-    others = [*parts[:i], *parts[i + 1 :]]
-    shown = shown_places(parts[i], others)
-    if parts[i].kind in ("circle", "pentagon") or len(shown) < 3 or not others:
-        return False
-    ring = shapely.get_coordinates(shapely.MultiPoint(shown).convex_hull.exterior.segmentize(0.001))
-    hidden = cKDTree(outline_of(parts, 0.001, SAME)).query(ring)[0] > INSIDE
-    return 0.001 * int(hidden.sum()) > LEAST_FREE_SIDE
-
-
-def shows_one_corner(parts: Sequence[Part], i: int) -> bool:
-    """Tell whether at most one corner of part i lies outside the other parts: a triangle could have that one, too."""
-    others = [*parts[:i], *parts[i + 1 :]]
-    if parts[i].kind not in ("rectangle", "pentagon") or not others:
-        return False
-    return int((outside_union(others, parts[i].corners) > INSIDE).sum()) <= 1
+    part, others, found = parts[i], [*parts[:i], *parts[i + 1 :]], set[Kind]()
+    shown = shown_places(part, others)
+    if part.kind in ("rectangle", "pentagon"):
+        normals, offsets = part.lines
+        sides = np.unique((normals @ shown.T - offsets[:, None]).argmax(axis=0))
+        if len(sides) <= 1 or (len(sides) == 2 and np.ptp(sides) in (1, len(offsets) - 1)):
+            found.add("triangle")
+    if part.style == "free" and part.kind in ("rectangle", "triangle") and others and len(shown) >= 3:
+        ring = shapely.get_coordinates(shapely.MultiPoint(shown).convex_hull.exterior.segmentize(0.001))
+        hidden = cKDTree(outline_of(parts, 0.001, SAME)).query(ring)[0] > INSIDE
+        if 0.001 * int(hidden.sum()) > LEAST_FREE_SIDE:
+            found.add("pentagon")
+    return found

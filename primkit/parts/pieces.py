@@ -59,11 +59,6 @@ class Piece:
         """From begin to end, metres."""
         return float(np.hypot(*(self.end - self.begin)))
 
-    def places(self, step: float = 0.002, inwards: float = 0.0) -> Floats:
-        """Return places along the piece, a step or less apart, without its end, shape (K, 2); inside of it [m]."""
-        share = np.arange(n := max(1, int(np.ceil(self.length / step))))[:, None] / n
-        return self.begin + share * (self.end - self.begin) - inwards * self.normal
-
 
 def pieces_of(points: Floats, spread: float, colors: Ints | None = None) -> list[Piece] | None:
     """Return the pieces of the outline that points lie on, shape (N, 2), metres; None where they do not close.
@@ -113,7 +108,8 @@ def _cut_at_colors(pieces: list[Piece], points: Floats, colors: Ints) -> list[Pi
         return pieces
     tree, found = cKDTree(points[known]), []
     for piece in pieces:
-        places = np.vstack([piece.places(0.001), piece.end])
+        share = np.linspace(0, 1, 1 + max(1, int(np.ceil(piece.length / 0.001))))[:, None]
+        places = piece.begin + share * (piece.end - piece.begin)
         near = colors[known][tree.query(places, min(NEIGHBOURS_ASKED, int(known.sum())))[1]]
         of_places = np.array([np.bincount(row).argmax() for row in near.reshape(len(places), -1)])
         cuts = [0, *(np.flatnonzero(np.diff(of_places)) + 1).tolist(), len(places)]

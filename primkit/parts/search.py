@@ -6,7 +6,8 @@ The cost of an explanation, to be least::
     +  sum over the parts of (PART_PRICE + CORNER_PRICE x corners + numbers x ln N)
 
 1. Parts are laid around the runs of straight pieces that bend one way: the pool.
-2. Of all sets of one to four parts of the pool, those that explain the points best are fitted, all parts together.
+2. Of all sets of one to four parts of the pool, those that explain the points best are fitted, all parts together;
+   the best two leave local optima: a side is laid elsewhere, a triangle on another base, and all is fitted again.
 3. From the best explanations one or two parts are taken away, or none, and around what is then left parts are laid:
    they join the pool, and so do their own, which are fitted. Again from 2, until nothing becomes better.
 
@@ -37,14 +38,15 @@ MOST_PARTS = 4
 SETS_KEPT, SETS_EXCHANGED = 60, 10  # of each size: to make larger ones of; that members are exchanged of
 SETS_LOOKED_AT, SETS_FITTED, OF_THE_SAME_KINDS = 40, 16, 3  # of each size; of these are fitted; and so of one kind
 SEARCH_ROUNDS, BASES = 4, 2  # of search; explanations that parts are swapped of
+WORTH_A_MOVE = 10.0  # of a side: for less, what is hidden would come to explain noise
 WORTH_A_ROUND = 2.0  # by how much the cost must have fallen for one more
-AS_FAR_AS = 3.0  # spreads (and a cell) from an outline: a point farther off is off
 MUCH_DEARER = 400.0  # than the best: such sets are not fitted
 POINTS_TO_LAY = 160
 ROUGHER, MOST_OF_A_POINT = 1.2, 16.0  # of spreads, and of the cost, where sets are compared roughly
 ALIKE_SPREADS = 0.3  # by which parts of one kind differ: less is the same
 PART_PRICE, CORNER_PRICE = 25.0, 2.0  # beside their numbers: fewest parts win, then fewest corners
 NOT_SEEN = 2000.0  # per metre
+ELSEWHERE = np.array([-0.06, -0.03, -0.016, -0.008, -0.004, 0.004, 0.008, 0.016, 0.03, 0.06])  # m, of a side
 SIGHT, IN_SIGHT = 0.015, 0.004  # m: a place so far outside all other parts has a point so near
 
 
@@ -79,14 +81,22 @@ def explanations(pieces: Sequence[Piece], sample: Sample, style: Style) -> list[
             key = tuple(id(pool[i]) for i in some)
             if key not in found:
                 found[key] = explained([pool[i] for i in some], sample)
-        ranked = sorted(found.values(), key=lambda e: e.cost)
-        if not ranked or ranked[0].cost > best - WORTH_A_ROUND:
+        for e in _bests(found):
+            better = improved(e, sample)
+            found[tuple(map(id, better.parts))] = better
+        bases = _bests(found)
+        if not bases or bases[0].cost > best - WORTH_A_ROUND:
             break
-        best = ranked[0].cost
-        bases = [ranked[0], *(e for e in ranked if e.kinds != ranked[0].kinds)][:BASES]
+        best = bases[0].cost
         left = [stretch for base in bases for stretch in _left(base.parts, sample, thin)]
         pool = [*(part for base in bases for part in base.parts), *laid(left, thin, style), *pool]
-    return ranked
+    return sorted(found.values(), key=lambda e: e.cost)
+
+
+def _bests(found: dict[tuple[int, ...], Explanation]) -> list[Explanation]:
+    """Return the best explanation, and the best of other kinds."""
+    ranked = sorted(found.values(), key=lambda e: e.cost)
+    return [*ranked[:1], *(e for e in ranked if e.kinds != ranked[0].kinds)][:BASES]
 
 
 def _different(pool: Sequence[Part], sample: Sample, near: float, alike: float) -> list[Part]:
@@ -182,6 +192,23 @@ def explained(parts: Sequence[Part], sample: Sample) -> Explanation:
     """Return parts fitted to the points, and what they cost."""
     parts = fitted(parts, sample)
     return Explanation(parts, full_cost(parts, sample))
+
+
+def improved(best: Explanation, sample: Sample) -> Explanation:
+    """Return the explanation, out of a local optimum: some side lies elsewhere, or a triangle on another base."""
+    while True:
+        distances, tried = sample.outside(best.parts), list[Explanation]()
+        for i, part in enumerate(best.parts):
+            beside = np.delete(distances, i, axis=0).min(axis=0, initial=np.inf)
+            many = part.with_numbers((part.x + np.multiply.outer(ELSEWHERE, part.pushes)).reshape(-1, len(part.x)))
+            cost = np.where(many.sound, cost_at(np.minimum(sample.outside([many])[0], beside), sample), np.inf)
+            for x in [many.x[cost.argmin()], *part.on_other_bases]:
+                if (one := part.with_numbers(x)).sound:
+                    tried.append(explained([*best.parts[:i], one, *best.parts[i + 1 :]], sample))
+        better = min(tried, key=lambda e: e.cost, default=best)
+        if better.cost > best.cost - WORTH_A_MOVE:
+            return best
+        best = better
 
 
 def price_of(parts: Sequence[Part], sample: Sample) -> float:
