@@ -42,13 +42,12 @@ def lack_of_fit(points: Floats, figure: Circle | Outlines, spread: float, *, squ
     n_numbers = 3 if isinstance(figure, Circle) else 5 if square else 2 * figure.angles.shape[1]
     residuals = residuals_along(points, figure, spread)
     beside = np.abs(residuals) > depth_of(spread)
+    fit = BEND_COST - bending(residuals[np.abs(residuals) <= SIGMAS * spread], n_numbers, spread)
     if (beside & np.roll(beside, 1)).any():  # two neighbours: no strays, but a corner of another
-        return 0.0
-    residuals = residuals[np.abs(residuals) <= SIGMAS * spread]
-    stiff = BEND_COST - bending(residuals, n_numbers, spread)
+        fit = min(fit, 0.0)
     if isinstance(figure, Circle) or figure.kind != "polygon":
-        return stiff
-    return min(stiff, sharpness(points, figure, spread))
+        return fit
+    return min(fit, sharpness(points, figure, spread))
 
 
 def residuals_along(points: Floats, figure: Circle | Outlines, spread: float) -> Floats:

@@ -181,8 +181,8 @@ MUTANTS = (
     Mutant(
         "what bends everywhere has no corners",
         "robust/lack_of_fit.py",
-        "min(stiff, sharpness(points, figure, spread))",
-        "stiff",
+        "min(fit, sharpness(points, figure, spread))",
+        "fit",
         FIT,
     ),
     Mutant(
