@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import primkit as pk
+from primkit.robust.choice import explained
 from primkit.robust.free import _pruned, free_outline, path_through
-from primkit.robust.lack_of_fit import lack_of_fit, residuals_along, sharpness
+from primkit.robust.lack_of_fit import lack_of_fit, lacks_corner, residuals_along, sharpness
 from primkit.robust.outlines import Outlines
 from primkit.robust.scatter import LEAST_SPREAD, spread_across
 from tests.benchmarks.open_world.boards import rng_of, seen_on, two_flush
@@ -208,13 +209,14 @@ def test_shallow_corners_are_told_from_an_arc_in_noise():
 
 
 def test_two_neighbours_beside_an_outline_are_a_corner_that_it_does_not_have():
-    ring, square = pk.Circle((0, 0), 0.1), pk.Polygon([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)])
+    points = pk.Polygon([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)]).outline(400)
     nib = np.array([(0.102, 0.0202), (0.104, 0.0203)])
-    for shape, figure in ((ring, ring), (square, outline_of(square))):
-        points = shape.outline(400)
-        assert lack_of_fit(np.vstack([points, nib[1:]]), figure, LEAST_SPREAD, square=True) > 10
-        assert lack_of_fit(np.vstack([points, nib]), figure, LEAST_SPREAD, square=True) == 0
-        assert lack_of_fit(np.vstack([points, nib * 1.1]), figure, LEAST_SPREAD, square=True) > 10, "strays, far off"
+    for more, sure in ((nib[1:], True), (nib, False), (nib * 1.1, True)):  # one stray; two neighbours; two far off
+        choice = explained(np.vstack([points, more]), LEAST_SPREAD)
+        assert (choice.shape.kind, choice.certain) == ("rectangle", sure)
+    ring, nib = pk.Circle((0, 0), 0.1), np.array([(0.102, 0.0002), (0.104, 0.0003)])
+    assert lacks_corner(np.vstack([ring.outline(400), nib]), ring, LEAST_SPREAD)
+    assert not lacks_corner(np.vstack([ring.outline(400), nib[1:]]), ring, LEAST_SPREAD)
 
 
 def test_a_polygon_that_is_not_convex_has_its_distances():

@@ -23,7 +23,7 @@ from .candidates import candidates, explained_again
 from .deviations import Certainty, certainty, without_points
 from .evidence import CERTAIN, NEARLY_ALL, Candidate
 from .free import free_candidate
-from .lack_of_fit import lack_of_fit
+from .lack_of_fit import lack_of_fit, lacks_corner
 from .outlines import LEAST_SIDE, Outlines
 from .scatter import SIGMAS, depth_of, noise_of
 
@@ -135,12 +135,13 @@ class Choice:
     def certain(self) -> bool:
         """Whether what it is, is beyond doubt.
 
-        It is ahead of all rivals, and of itself with bends; nearly all points lie on it, none deep inside; nearly all
-        of it was seen, each side by points of its own, or, where only the four kinds can be there, three eighths of a
-        circle; it is so large that its kind can show, and it is not as well two shapes with names side by side.
+        It is ahead of all rivals, and of itself with bends; nearly all points lie on it, none deep inside, no two side
+        by side without; nearly all of it was seen, each side by points of its own, or, where only the four kinds can be
+        there, three eighths of a circle; it is so large that its kind can show, and it is not as well two shapes with
+        names side by side.
         """
         best = self.ranked[0] if self.ranked else None
-        if best is None or best.shape is None:
+        if best is None or best.shape is None or isinstance(best.figure, Line):
             return False
         figure = best.figure
         large = best.shape.dimensions[-1] if isinstance(best.shape, Circle) else best.shape.sides.min()
@@ -148,6 +149,7 @@ class Choice:
             min(self.lead, self.fit) >= CERTAIN
             and self.on_it.mean() >= NEARLY_ALL
             and not self.inside.any()
+            and not lacks_corner(self.points, figure, self.spread)
             and (min(best.seen) >= MOST_SEEN or self._round_enough(best))
             and not (isinstance(figure, Outlines) and without_points(figure, self.points, self.spread).any())
             and large >= LEAST_SIDE

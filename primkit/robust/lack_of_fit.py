@@ -41,13 +41,16 @@ def lack_of_fit(points: Floats, figure: Circle | Outlines, spread: float, *, squ
     """Return how much more a figure would cost if it could bend; below zero, it had better."""
     n_numbers = 3 if isinstance(figure, Circle) else 5 if square else 2 * figure.angles.shape[1]
     residuals = residuals_along(points, figure, spread)
-    beside = np.abs(residuals) > depth_of(spread)
-    fit = BEND_COST - bending(residuals[np.abs(residuals) <= SIGMAS * spread], n_numbers, spread)
-    if (beside & np.roll(beside, 1)).any():  # two neighbours: no strays, but a corner of another
-        fit = min(fit, 0.0)
+    stiff = BEND_COST - bending(residuals[np.abs(residuals) <= SIGMAS * spread], n_numbers, spread)
     if isinstance(figure, Circle) or figure.kind != "polygon":
-        return fit
-    return min(fit, sharpness(points, figure, spread))
+        return stiff
+    return min(stiff, sharpness(points, figure, spread))
+
+
+def lacks_corner(points: Floats, figure: Circle | Outlines, spread: float) -> bool:
+    """Tell whether two neighbours lie beside a figure: no strays, but a corner that it does not have."""
+    beside = np.abs(residuals_along(points, figure, spread)) > depth_of(spread)
+    return bool((beside & np.roll(beside, 1)).any())
 
 
 def residuals_along(points: Floats, figure: Circle | Outlines, spread: float) -> Floats:

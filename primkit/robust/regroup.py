@@ -188,10 +188,11 @@ def _halves(group: Choice, spread: float, n_shapes: int | None, explain: Opinion
         return ()
     ways = [parts for side in _sides(group, spread) if (parts := _parts(group.points, side, explain))]
     best, before = min(ways, key=_cost_apart, default=()), tuple[Choice, ...]()
-    # Each point to the shape that it is nearer to; where both run along each other, what lies on both is of either.
+    # Each point to the shape that it is nearer to; where two run along each other, what lies on both is of either.
+    two = np.hypot(*np.ptp(group.points, axis=0)) <= 2 * MOST_ACROSS  # and no room
     while best != before and all(part.shape is not None for part in best) and not explain.bounded:
         far, near = (np.abs(part.shape.signed_distance(group.points)) for part in best if part.shape is not None)
-        nearer, on_both = near < far, np.maximum(near, far) <= SIGMAS * spread
+        nearer, on_both = near < far, two & (np.maximum(near, far) <= SIGMAS * spread)
         sides = [nearer | on_both, nearer & ~on_both] if on_both.any() else [nearer]
         ways = [parts for side in sides if (parts := _parts(group.points, side, explain))]
         before, best = best, min([best, *ways], key=_cost_apart)

@@ -173,16 +173,16 @@ MUTANTS = (
     ),
     Mutant(
         "two neighbours beside an outline are a corner of another",
-        "robust/lack_of_fit.py",
-        "(beside & np.roll(beside, 1)).any()",
-        "False",
-        FIT,
+        "robust/choice.py",
+        "and not lacks_corner(self.points, figure, self.spread)",
+        "",
+        CHOICE,
     ),
     Mutant(
         "what bends everywhere has no corners",
         "robust/lack_of_fit.py",
-        "min(fit, sharpness(points, figure, spread))",
-        "fit",
+        "min(stiff, sharpness(points, figure, spread))",
+        "stiff",
         FIT,
     ),
     Mutant(
