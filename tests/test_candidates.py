@@ -179,6 +179,14 @@ def test_more_pieces_come_closer():
     assert rms == pytest.approx(0.0588 * 0.05, rel=0.3)  # a chord over a fifth of a circle, away from its ends
 
 
+def test_no_piece_spans_a_side_that_was_not_seen():
+    """The farthest points stand at its ends: cut between the last two of them, the first piece would begin beyond."""
+    left, bottom, right = (np.arange(n) * 0.004 for n in (10, 25, 21))
+    sides = [(0.0, 0.04 - y) for y in left], [(x, 0.0) for x in bottom], [(0.1, y) for y in right]
+    points = np.vstack(sides)
+    assert best_cuts(points - points.mean(axis=0))[3].squares < 1e-12
+
+
 def test_a_side_that_was_not_seen_is_a_chord():
     """Three sides of a rectangle and the chord over the fourth; or of a triangle two, and the third."""
     for corners, hidden in (([(0, 0), (0.2, 0), (0.2, 0.1), (0, 0.1)], 1), ([(0, 0), (0.2, 0), (0, 0.2)], 1)):

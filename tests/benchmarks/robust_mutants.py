@@ -227,7 +227,7 @@ MUTANTS = (
         "robust/cuts.py",
         "if gap.max() > unseen:",
         "if False:",
-        ("test_unknown.py",),
+        ("test_candidates.py",),
     ),
     # --- free ---
     Mutant(
