@@ -1,5 +1,7 @@
 """Covariance: what is stated of fitted numbers is what they scatter by, whether points err alone or together."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -44,6 +46,13 @@ def test_points_of_unknown_scans_may_share_what_they_scatter_beyond_what_is_told
     ]
     np.testing.assert_allclose(std[1], std[0], rtol=0.15)
     assert (std[2] > 1.5 * std[1]).all()
+
+
+def test_where_no_point_tells_of_a_number_none_is_known():
+    """Such as of a side that only a stray or two lie near: no warning leaves the library."""
+    fit, scans, _ = circle_seen_by_scans(np.random.default_rng(0), 0.003, 0.0)
+    told = np.array([[1.0], [1.0], [0.0]])
+    assert np.isnan(covariance(replace(fit, effect=told * fit.effect, pulls=told * fit.pulls), scans)).all()
 
 
 def wall(length, turn, n=40):

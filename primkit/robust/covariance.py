@@ -105,7 +105,8 @@ def covariance(fit: Linearised, scans: Ints, noise_std: float = 0.0) -> Floats:
     still = np.exp(-((np.pi / CELL) ** 2) * noise)
     alone = max(alone, of_cells) - EVEN_OUT * min(n / crossed, 1.0) * still * of_cells
     if noise > 0:
-        alone *= np.mean((fit.pulls**2).sum(axis=1) / np.diag(aa)) / (squares / n)
+        with np.errstate(invalid="ignore"):  # where no point tells of a number, none is known
+            alone *= np.mean((fit.pulls**2).sum(axis=1) / np.diag(aa)) / (squares / n)
     if shared > 0:
         shared *= 1 + STUDENT * ((uu @ uu) ** 2).sum() / (uu**2).sum() ** 2  # one over the degrees of freedom
     unknown = squares / max(n - len(a), 1) - LEAST_SPREAD**2 - MEAN_ACROSS * noise_std**2
