@@ -204,9 +204,8 @@ def _linked(places: Floats, n_at: Labels, reach: float, neighbours: int) -> Labe
     apart = cell_tree.query_pairs(WITHIN, output_type="ndarray").T
     apart = apart[:, alive[apart].all(axis=0) & (group[apart[0]] != group[apart[1]])]
     if apart.size:  # two groups may come within reach: only distances tell
-        edge = np.flatnonzero(handing_on & np.isin(cell, apart))
-        pairs = edge[cKDTree(places[edge]).query_pairs(reach, output_type="ndarray").T]
-        group = components(len(cells), group[cell[pairs]])[group]
+        meet = _meet(places[handing_on], cell[handing_on], apart, reach)
+        group = components(len(cells), group[apart[:, meet]])[group]
 
     labels = np.full(len(places), -1, dtype=np.intp)
     _, begins, which = np.unique(group[cell[handing_on]], return_index=True, return_inverse=True)
@@ -215,6 +214,24 @@ def _linked(places: Floats, n_at: Labels, reach: float, neighbours: int) -> Labe
         if not handing_on[i]:
             labels[i] = min((labels[j] for j in near if handing_on[j]), default=-1)
     return labels
+
+
+def _meet(places: Floats, cell: Labels, pairs: NDArray[np.intp], reach: float) -> NDArray[np.bool_]:
+    """Tell which pairs of cells, shape (2, P), have a place each, shape (N, 2), that lie within reach, shape (P,).
+
+    Cell by cell, for of crowds that run beside each other all pairs of places are too many.
+    """
+    from scipy.spatial import cKDTree
+
+    order = np.argsort(cell, kind="stable")
+    numbers, begins = np.unique(cell[order], return_index=True)
+    low, high = (extreme.reduceat(places[order], begins) for extreme in (np.minimum, np.maximum))
+    a, b = pairs = np.searchsorted(numbers, pairs)
+    gaps, inside = (low[a] - high[b], low[b] - high[a]), np.split(places[order], begins[1:])
+    meet = np.hypot(*np.maximum(*gaps).clip(0.0).T) <= reach  # the least that boxes around both allow
+    doubt = meet & (np.hypot(*np.minimum(*gaps).T) > reach)  # and the most
+    meet[doubt] = [cKDTree(inside[i]).query(inside[j])[0].min() <= reach for i, j in pairs[:, doubt].T]
+    return meet
 
 
 def _cells(places: Floats, side: float) -> tuple[Floats, Labels]:

@@ -1,5 +1,6 @@
 """Which points belong together: K-Means against all partitions, linking against the graph's components."""
 
+import tracemalloc
 from itertools import product
 
 import numpy as np
@@ -299,6 +300,19 @@ def test_two_rows_are_joined_at_the_reach_and_split_beyond(gap, groups):
         right_end = 0.045 + shift
         points = row(10, x=shift) + row(10, x=right_end + gap)
         assert link(points).max() + 1 == groups
+
+
+def test_crowds_are_not_compared_point_by_point():
+    """Two of three crowds lie within reach of each other, the third beyond."""
+    crowds = [
+        np.random.default_rng(0).normal((x, 0.5 * LINK), 2e-4, (2000, 2)) for x in (0.5 * LINK, 1.3 * LINK, LINK * 3)
+    ]
+    tracemalloc.start()
+    labels = link(np.vstack(crowds))
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert labels.tolist() == np.repeat([0, 0, 1], 2000).tolist()
+    assert most < 2000**2  # bytes: less than one for each pair
 
 
 def test_a_chain_is_one_group_however_long():
