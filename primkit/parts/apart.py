@@ -54,7 +54,7 @@ class Apart:
     joints : tuple of (int, int, str)
         Which parts meet, and how: ``"touch"`` where that is enough, ``"overlap"`` where they must.
     open_sizes : tuple of tuple of bool
-        For each part, which of its ``dimensions`` can change by more than 5 mm and the outline would be the same.
+        For each part, which of its ``dimensions`` can change by more than 6 mm and the outline would be the same.
     could_be : tuple of tuple of str
         For each part, of which other kinds it could be.
     margin : float
